@@ -1,0 +1,1 @@
+# install rules live here; written with the exported package

@@ -1,0 +1,13 @@
+# Settings that every target of the project shares.
+#
+# -ffp-contract=off everywhere: decoded samples must be the same bits on every machine, and the encoder judges its own
+# output with the decoder's arithmetic (spec/gim-format.md, "Arithmetic").
+function(gim_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_compile_options(${target} PRIVATE
+        $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off>)
+    if(GIM_WARNINGS_AS_ERRORS)
+        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Werror>)
+    endif()
+endfunction()
