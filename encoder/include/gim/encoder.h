@@ -83,4 +83,65 @@ struct TopologySummary {
 };
 TopologySummary summarize_topology(const TriangleMesh& mesh);
 
+// ---- encoding --------------------------------------------------------------------------------------------------------
+
+enum class Layout { kGim, kMcgim, kTiles, kAuto };
+
+// How many bits the samples get.
+struct RateTarget {
+    enum class Kind {
+        kLossless,  // the decoded image equals the quantized image
+        kPsnr,      // value: dB, decoded surface against the input mesh; never below it
+        kBytes,     // value: size of the whole file; never above it
+        kQuality,   // value: 0 (smallest) .. 100 (finest); 10 more halve the quantizer step
+    };
+    Kind kind = Kind::kQuality;
+    double value = 75;
+};
+
+struct EncodeOptions {
+    Layout layout = Layout::kGim;
+    uint32_t side = 257;      // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory
+    uint32_t node_side = 17;  // grid on which cut-nodes lie, so that all coarser levels down to it stay closed;
+                              // made finer by the encoder where the cut has too many nodes for it
+    uint32_t bits = 12;       // quantizer: bits per coordinate of the bounding box, 8..20
+    RateTarget rate;
+    uint64_t seed = 1;
+    uint32_t threads = 0;  // 0: all cores; the bytes do not depend on it
+};
+
+struct StageTime {
+    std::string stage;
+    double seconds = 0;
+};
+
+// Figures of one run, in the order they become known.
+struct EncodeReport {
+    uint64_t input_vertices = 0, input_triangles = 0;      // as read
+    uint64_t welded_vertices = 0, removed_triangles = 0;   // by cleaning
+    TopologySummary topology;                              // of the cleaned mesh
+    uint32_t side = 0, node_side = 0, cut_paths = 0;
+    double cut_length = 0;                                 // object units
+    double stretch_efficiency = 0;                         // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
+    uint64_t flipped_triangles = 0;                        // in the parametrization; always 0 in a successful run
+    double bits_per_sample = 0, bits_per_vertex = 0;       // file bits over samples / input vertices
+    uint64_t file_bytes = 0, sideband_bytes = 0;
+    Comparison error;                                      // decoded level 0 against the input mesh
+    std::vector<StageTime> times;
+    double seconds = 0;
+};
+
+struct Encoded {
+    std::vector<uint8_t> bytes;  // a complete .gim file
+    EncodeReport report;
+};
+
+// Mesh to .gim. The mesh must clean up to a connected, orientable 2-manifold (kGim).
+Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress = {});
+
+// An existing geometry image to .gim: side*side*3 floats, planar (all x, all y, all z), sample (i, j) at j*side + i.
+// Boundary samples within `weld_tolerance` of each other (object units) are glued where that gives a closed surface.
+Result<Encoded> encode_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance,
+                             const EncodeOptions& options, const Progress& progress = {});
+
 }  // namespace gim
