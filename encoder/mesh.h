@@ -1,7 +1,7 @@
 // The encoder's working mesh: an indexed oriented 2-manifold, possibly with boundaries, and its half-edge topology.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
