@@ -10,9 +10,9 @@
 namespace gim {
 
 // Returns the error of a Result-valued expression, or binds its value to `name`.
-#define GIM_TRY(name, expression)                             \
-    auto name##_result = (expression);                        \
-    if (!name##_result.ok()) return name##_result.error();    \
+#define GIM_TRY(name, expression)                          \
+    auto name##_result = (expression);                     \
+    if (!name##_result.ok()) return name##_result.error(); \
     auto& name = name##_result.value()
 
 }  // namespace gim

@@ -6,7 +6,8 @@ namespace gim {
 namespace {
 
 TEST(Topology, ClosedTetrahedronHasNoBoundary) {
-    const Mesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    const Mesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)},
+                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
     const Topology topology = build_topology(mesh);
     for (uint32_t h = 0; h < topology.twin.size(); ++h) {
         ASSERT_NE(topology.twin[h], kNone);

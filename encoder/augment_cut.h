@@ -1,0 +1,38 @@
+// Finds the cut: the initial one, then iterated augmentation towards the extrema of the surface.
+//
+// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3.2, "Iterated cut augmentation". We differ in three
+// ways. The search runs on a coarse version of the surface, where a parametrization takes a tenth of a second; the cut
+// is then carried to the full mesh exactly, edge by edge, as the vertex splits of the progressive mesh are made, and
+// straightened there. On closed surfaces of genus 0 the two bootstrap edges are dropped once two extrema are known: the
+// path between them is the cut. And the search looks a few steps past the first augmentation that does not help.
+#pragma once
+
+#include <vector>
+
+#include "encoder/boundary_map.h"
+#include "encoder/cut.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct AugmentOptions {
+    BoundaryMapOptions boundary;      // of the final image: the search judges maps to the same square
+    uint32_t coarse_vertices = 3000;  // size of the mesh searched on; more see finer extrema, time grows with it
+    uint32_t most_paths = 40;         // augmentations at most
+    uint32_t patience = 3;            // augmentations without gain before giving up
+};
+
+// One state of the search, for reports and pictures.
+struct AugmentStep {
+    double efficiency = 0;      // stretch efficiency of the coarse map
+    uint32_t extremum = kNone;  // vertex of the input mesh that this step reached
+};
+
+struct FoundCut {
+    CutEdges cut;  // of the input mesh; opens it into a disk
+    std::vector<AugmentStep> steps;
+};
+Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const AugmentOptions& options,
+                          const Progress& progress = {});
+
+}  // namespace gim
