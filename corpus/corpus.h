@@ -1,0 +1,55 @@
+// Meshes that every machine has: made by code, asked for by property.
+//
+//   for (const CorpusEntry& entry : corpus().valid().closed().genus(1)) check(entry.mesh(), entry.name);
+//
+// manifest.csv lists them with their expected topology. Meshes are built when asked for and are the same everywhere up
+// to the last digits of sin and cos.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "corpus/generators.h"
+#include "gim/encoder.h"
+
+namespace gim::corpus {
+
+struct CorpusEntry {
+    std::string name;
+    TriangleMesh (*make)();
+    bool is_valid;  // an oriented 2-manifold without unreferenced vertices
+    uint32_t components;
+    uint32_t boundary_loops;
+    int genus;          // summed over components; -1 where the mesh is broken
+    std::string fault;  // what is wrong with a mesh that is not valid
+
+    TriangleMesh mesh() const { return make(); }
+};
+
+class Corpus {
+  public:
+    explicit Corpus(std::vector<CorpusEntry> entries) : entries_(std::move(entries)) {}
+
+    auto begin() const { return entries_.begin(); }
+    auto end() const { return entries_.end(); }
+    size_t size() const { return entries_.size(); }
+
+    Corpus valid() const;
+    Corpus broken() const;
+    Corpus connected() const;  // valid, one component
+    Corpus closed() const;     // valid, no boundary
+    Corpus bounded() const;    // valid, with a boundary
+    Corpus genus(int value) const;
+
+    // The entry of that name; a made-up name is a mistake in the caller, answered with an entry whose name is empty.
+    CorpusEntry named(const std::string& name) const;
+
+  private:
+    std::vector<CorpusEntry> entries_;
+};
+
+// All of it. Never empty.
+Corpus corpus();
+
+}  // namespace gim::corpus
