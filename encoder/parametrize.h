@@ -15,8 +15,8 @@
 namespace gim {
 
 struct ParametrizeOptions {
-    double growth = 1.6;      // sweep over all vertices whenever the mesh has grown by this factor
-    int sweeps = 6;           // sweeps each time; more come closer to the optimum, time grows with it
+    double growth = 1.2;      // sweep over all vertices whenever the mesh has grown by this factor
+    int sweeps = 8;           // sweeps each time; more come closer to the optimum, time grows with it
     int final_sweeps = 40;    // at most, on the full mesh
     double tolerance = 2e-4;  // stop sweeping when a sweep gains less than this part of the energy
 };

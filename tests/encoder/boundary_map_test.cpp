@@ -1,0 +1,108 @@
+#include "encoder/boundary_map.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "encoder/cut.h"
+#include "tests/encoder/stage_meshes.h"
+
+namespace gim {
+namespace {
+
+struct Laid {
+    NamedMesh input;
+    SquareBoundary boundary;
+};
+
+std::vector<Laid> laid_out(const BoundaryMapOptions& options) {
+    std::vector<Laid> result;
+    for (NamedMesh& m : connected_meshes()) {
+        const Topology topology = build_topology(m.mesh);
+        const CutEdges cut = straighten_cut(m.mesh, topology, initial_cut(m.mesh, topology, 0));
+        auto boundary = map_boundary(open_mesh(m.mesh, topology, cut).value(), options);
+        EXPECT_TRUE(boundary.ok()) << m.name;
+        if (boundary.ok()) result.push_back({std::move(m), std::move(boundary.value())});
+    }
+    return result;
+}
+
+TEST(BoundaryMap, PathsFillTheRingAndMatesAreEquallyLong) {
+    for (const Laid& l : laid_out({})) {
+        const Sideband& sideband = l.boundary.sideband;
+        uint32_t total = 0;
+        for (const CutPath& path : sideband.paths) {
+            total += path.length;
+            if (path.mate != kNoMate) {
+                EXPECT_EQ(sideband.paths[static_cast<size_t>(path.mate)].length, path.length) << l.input.name;
+            }
+        }
+        EXPECT_EQ(total, 4 * (sideband.node_side - 1)) << l.input.name;
+    }
+}
+
+TEST(BoundaryMap, EveryCornerOfTheSquareIsAVertex) {
+    for (const Laid& l : laid_out({65, 17})) {
+        for (const double corner : {0.0, 64.0, 128.0, 192.0}) {
+            EXPECT_EQ(std::count(l.boundary.ring.begin(), l.boundary.ring.end(), corner), 1)
+                << l.input.name << " " << corner;
+        }
+    }
+}
+
+TEST(BoundaryMap, RingPositionsRiseOnceAround) {
+    for (const Laid& l : laid_out({})) {
+        const std::vector<double>& ring = l.boundary.ring;
+        int falls = 0;
+        for (size_t i = 0; i < ring.size(); ++i) {
+            ASSERT_NE(ring[i], ring[(i + 1) % ring.size()]) << l.input.name;
+            falls += ring[(i + 1) % ring.size()] < ring[i];
+        }
+        EXPECT_EQ(falls, 1) << l.input.name;
+    }
+}
+
+TEST(BoundaryMap, NoInteriorEdgeLiesAlongASide) {
+    for (const Laid& l : laid_out({})) {
+        const Mesh& mesh = l.boundary.opened.mesh;
+        const Topology topology = build_topology(mesh);
+        for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+            if (topology.twin[h] == kNone) continue;
+            EXPECT_EQ(l.boundary.sides[from(mesh, h)] & l.boundary.sides[to(mesh, h)], 0) << l.input.name;
+        }
+        EXPECT_EQ(euler_characteristic(mesh), 1) << l.input.name;
+    }
+}
+
+TEST(BoundaryMap, NoLeafOfTheCutLiesOnACorner) {
+    for (const Laid& l : laid_out({})) {
+        const Sideband& sideband = l.boundary.sideband;
+        uint32_t at = sideband.start;
+        for (size_t k = 0; k < sideband.paths.size(); ++k) {
+            at += sideband.paths[k].length;
+            if (sideband.paths[k].mate == static_cast<int32_t>((k + 1) % sideband.paths.size())) {
+                EXPECT_NE(at % (sideband.node_side - 1), 0u) << l.input.name;
+            }
+        }
+    }
+}
+
+TEST(BoundaryMap, TooManyPathsForTheImageIsAClearError) {
+    const Mesh mesh = clean(corpus::plate_with_holes(3, 4)).value().mesh;
+    const Topology topology = build_topology(mesh);
+    const CutEdges cut = initial_cut(mesh, topology, 0);
+    const auto boundary = map_boundary(open_mesh(mesh, topology, cut).value(), {5, 5});
+    ASSERT_FALSE(boundary.ok());
+    EXPECT_NE(boundary.error().message.find("too many"), std::string::npos);
+}
+
+TEST(RingPoint, WalksTheSquareCounterClockwise) {
+    EXPECT_EQ(ring_point(0, 5), Vec2(0, 0));
+    EXPECT_EQ(ring_point(4, 5), Vec2(1, 0));
+    EXPECT_EQ(ring_point(8, 5), Vec2(1, 1));
+    EXPECT_EQ(ring_point(12, 5), Vec2(0, 1));
+    EXPECT_EQ(ring_point(14, 5), Vec2(0, 0.5));
+}
+
+}  // namespace
+}  // namespace gim
