@@ -1,9 +1,10 @@
 // The topological sideband: how the boundary of the square is glued together.
-// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3.3. We store mates by index instead of label strings, and
-// lengths in units of the node grid (the coarsest grid on which every cut-node is a grid point).
+// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3.3. We store mates by index instead of label strings,
+// and lengths in units of the node grid (the coarsest grid on which every cut-node is a grid point).
 //
 // The ring: the 4*(side-1) boundary samples of a side x side image, starting at row 0, column 0 and walking row 0 with
-// rising column, then the last column with rising row, then the last row with falling column, then column 0 with falling row.
+// rising column, then the last column with rising row, then the last row with falling column, then column 0 with
+// falling row.
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 namespace gim {
 
 // Negative: feed more bytes and call again. Zero: done. Positive: final.
-enum class [[nodiscard]] Status : int32_t {
-    kNeedMoreInput = -1,      // the bytes end before the requested level is complete
+enum class [[nodiscard]] Status : int32_t{
+    kNeedMoreInput = -1,  // the bytes end before the requested level is complete
     kOk = 0,
     kNotGim = 1,              // the magic number is missing
     kUnsupportedVersion = 2,  // a newer format version, or an unknown critical chunk

@@ -1,7 +1,8 @@
 /* gim/decoder.h: reads .gim files (spec/gim-format.md). C99 and C++.
  *
- * Nothing here allocates, prints, throws or keeps state: sizes come from functions, memory from the caller. Every byte of
- * the input is treated as hostile. Any number of threads may decode the same bytes at the same time.
+ * Nothing here allocates, prints, throws or keeps state: sizes come from functions, memory from the caller; up to 32
+ * KiB of stack are used. Every byte of the input is treated as hostile. Any number of threads may decode the same bytes
+ * at the same time.
  *
  *   gim_info info;
  *   gim_status s = gim_read_info(bytes, size, NULL, &info);              // header and index only
@@ -13,7 +14,10 @@
  *   s = gim_decode_mesh(&info, bytes, size, 0, 0, positions, NULL, NULL, triangles, scratch, level.scratch_size);
  *
  * A file holds one or more images (one per connected component of the surface). Each image is a square of
- * side x side surface points, side = 2^j + 1; level L has side 2^(j-L) + 1. */
+ * side x side surface points, side = 2^j + 1; level L has side 2^(j-L) + 1. Images of one file may differ in side: the
+ * coarser levels of the file leave the small ones out. Seen from outside, the boundary of the square runs
+ * counter-clockwise along row 0 with rising column first: (d position / d column) x (d position / d row) points
+ * outwards. */
 #ifndef GIM_DECODER_H
 #define GIM_DECODER_H
 
@@ -58,15 +62,17 @@ typedef struct gim_limits {
 /* Header and index of a file. Plain values; keeps no pointer into the bytes. */
 typedef struct gim_info {
     uint32_t version;
-    uint32_t layout;       /* GIM_LAYOUT_... */
-    uint32_t coding;       /* GIM_CODING_... */
-    uint32_t bits;         /* quantizer: bits per coordinate of the bounding box, 8..20 */
+    uint32_t layout; /* GIM_LAYOUT_... */
+    uint32_t coding; /* GIM_CODING_... */
+    uint32_t bits;   /* quantizer: bits per coordinate of the bounding box, 8..20 */
     uint32_t image_count;
     uint32_t level_count;  /* levels stored; image i can close levels 0 .. gim_level_info.coarsest_level */
+    uint32_t chunk_count;  /* for gim_read_chunk */
     uint64_t sample_count; /* all images at level 0 */
     uint64_t file_size;    /* of the whole file, as the index tells */
     float origin[3];       /* position = origin + step * integer (lossless) */
     float step;            /* object units per quantization step, > 0 */
+    float quantizer;       /* lossy: quantizer step of a coefficient of unit norm, in quantization steps; else 0 */
     uint32_t index_size;   /* bytes of header and index; a prefix of this length suffices for gim_read_info */
     gim_limits limits;     /* in force for later calls */
 } gim_info;
@@ -86,44 +92,50 @@ typedef struct gim_level_info {
 
 /* level: 0 = full resolution. Reads the image's sideband, so `size` must reach it (a few hundred bytes).
  * GIM_NO_SUCH_LEVEL beyond coarsest_level. Cost O(side). */
-GIM_API gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                       gim_level_info* level_info);
+GIM_API gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                       uint32_t level, gim_level_info* level_info);
 
-/* Decodes one level of one image: side*side*3 floats, row-major, object units, cut fused (equivalent boundary samples are
- * bit-equal and the correction is diffused into the interior). Reads only the first prefix_size bytes.
- * scratch: scratch_size bytes, 16-byte aligned; contents undefined afterwards. On failure positions are unspecified.
- * Cost O(side^2). The floats are the same bits on every platform. */
-GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                        float* positions, void* scratch, size_t scratch_size);
+/* Decodes one level of one image: side*side*3 floats, row-major, object units, cut fused (equivalent boundary samples
+ * are bit-equal and the correction is diffused into the interior). Reads only the first prefix_size bytes. scratch:
+ * scratch_size bytes, 16-byte aligned; contents undefined afterwards. On failure positions are unspecified. Cost
+ * O(side^2). The floats are the same bits on every platform. */
+GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                        uint32_t level, float* positions, void* scratch, size_t scratch_size);
 
 /* The same level as an indexed triangle mesh, watertight across the cut.
  * positions  vertex_count*3 floats, object units
+ *            the vertices of the boundary ring come first, then the inner samples row by row
  * normals    vertex_count*3 floats, unit length (central differences; zero where undefined), or NULL
- * texcoords  vertex_count*2 floats in [0,1]: the implicit parametrization; a vertex on the cut has that of its first sample; or NULL
- * triangles  triangle_count*3 indices, counter-clockwise seen from outside; quads split along the shorter diagonal */
+ * texcoords  vertex_count*2 floats in [0,1]: u = column / (side-1), v = row / (side-1) of the implicit parametrization;
+ * a vertex on the cut has that of its first sample; or NULL triangles  triangle_count*3 indices, counter-clockwise seen
+ * from outside; quads are split along the shorter diagonal, except where that would make two edges one (spec,
+ * "Surface"); or NULL */
 GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                   float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
-                                   size_t scratch_size);
+                                   float* positions, float* normals, float* texcoords, uint32_t* triangles,
+                                   void* scratch, size_t scratch_size);
 
-/* The same level as a grid mesh for texturing: side*side vertices in row-major order, samples on the cut repeated with equal
- * positions and normals. triangles as in gim_decode_mesh, indexing samples. normals may be NULL. */
+/* The same level as a grid mesh for texturing: side*side vertices in row-major order, samples on the cut repeated with
+ * equal positions and normals. triangles as in gim_decode_mesh, indexing samples. normals and triangles may be NULL. */
 GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                   float* positions, float* normals, uint32_t* triangles, void* scratch, size_t scratch_size);
+                                   float* positions, float* normals, uint32_t* triangles, void* scratch,
+                                   size_t scratch_size);
 
 /* Chunk i of the index, for tools that describe a file. GIM_BAD_ARGUMENT past the last chunk. */
 typedef struct gim_chunk {
-    char name[8];      /* zero-terminated, as in the spec */
-    uint32_t image;    /* UINT32_MAX: all images */
-    int32_t level;     /* -1: not a level */
+    char name[8];  /* zero-terminated, as in the spec; "????": unknown to this reader */
+    uint32_t type; /* number in the file */
+    int32_t level; /* -1: not a level */
     uint64_t offset, size;
+    uint64_t raw_size; /* after decompression; equal to size where nothing is compressed */
     uint32_t intact;   /* 1: bytes present and checksum correct; 0: not */
 } gim_chunk;
 GIM_API gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, uint32_t i, gim_chunk* chunk);
 
-/* The gluing of an image's ring at a level, for tools: class_of has 4*(side-1) entries, equal numbers for samples that are one
- * surface point (ring order as in spec). path_count may be NULL. */
+/* The gluing of an image's ring at a level, for tools: class_of has 4*(side-1) entries, equal numbers for samples that
+ * are one surface point (ring order: along row 0, down the last column, back along the last row, up column 0). NULL:
+ * not wanted. */
 GIM_API gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                  uint32_t* class_of, uint32_t* path_count, void* scratch, size_t scratch_size);
+                                  uint32_t* class_of, uint32_t* path_count);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,244 @@
+// The C interface of gim/decoder.h over the parts in this folder.
+#include <algorithm>
+#include <cstring>
+
+#include "decoder/image_decoder.h"
+#include "decoder/triangulate.h"
+#include "gim/decoder.h"
+
+namespace gim {
+namespace {
+
+gim_status code(Status status) { return static_cast<gim_status>(status); }
+
+ContainerLimits limits_of(const gim_limits* limits) {
+    ContainerLimits l;
+    if (limits) l = {limits->max_samples, limits->max_images, limits->max_side};
+    return l;
+}
+
+std::span<const uint8_t> span_of(const void* bytes, size_t size) { return {static_cast<const uint8_t*>(bytes), size}; }
+
+// The header again, from the bytes: gim_info is the caller's to damage, and holds no pointers.
+Status reopen(const gim_info* info, const void* bytes, size_t size, Header* header) {
+    if (!info || (!bytes && size > 0)) return Status::kBadArgument;
+    if (Status s = parse_header(span_of(bytes, size), limits_of(&info->limits), header); s != Status::kOk) return s;
+    const bool same_file = header->index_size == info->index_size && header->file_size == info->file_size &&
+                           header->image_count() == info->image_count && header->level_count == info->level_count;
+    return same_file ? Status::kOk : Status::kBadArgument;
+}
+
+// One level of one image, ready to be decoded.
+struct Level {
+    Header header;
+    SeamTable seams;
+    uint32_t side = 0, coarsest = 0, class_count = 0;
+    float* samples = nullptr;  // in units, after decode()
+    ImageWorkspace ws;
+};
+
+Status open_level(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level, Level* out) {
+    if (Status s = reopen(info, bytes, size, &out->header); s != Status::kOk) return s;
+    if (image >= out->header.image_count()) return Status::kBadArgument;
+    if (Status s = read_seams(out->header, span_of(bytes, size), image, &out->seams); s != Status::kOk) return s;
+    const uint32_t steps = out->header.side(image) - 1;
+    out->coarsest = 0;
+    while (out->coarsest + 1 < out->header.level_count_of(image) &&
+           level_is_closed(out->seams, (steps >> (out->coarsest + 1)) + 1))
+        ++out->coarsest;
+    if (level > out->coarsest) return Status::kNoSuchLevel;
+    out->side = (steps >> level) + 1;
+    out->class_count = ring_class_count(out->seams, out->side);
+    return Status::kOk;
+}
+
+size_t scratch_size(uint32_t side) {
+    Arena arena(nullptr);
+    (void)lay_out(side, &arena);
+    return arena.used();
+}
+
+Status decode(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level, void* scratch,
+              size_t scratch_bytes, Level* out) {
+    if (Status s = open_level(info, bytes, size, image, level, out); s != Status::kOk) return s;
+    if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return Status::kBadArgument;
+    if (scratch_bytes < scratch_size(out->side)) return Status::kScratchTooSmall;
+    Arena arena(scratch);
+    out->ws = lay_out(out->side, &arena);
+    return decode_level(out->header, span_of(bytes, size), image, level, out->seams, out->ws, &out->samples);
+}
+
+void to_object(const Header& header, const float* units, float* position) {
+    for (int k = 0; k < 3; ++k) position[k] = header.origin[static_cast<size_t>(k)] + header.step * units[k];
+}
+
+// Calls f(vertex, sample) for every vertex of the closed mesh with its first sample.
+template <class F>
+void for_each_vertex(const Level& level, const F& f) {
+    const uint32_t side = level.side;
+    uint32_t next = 0;
+    for (uint32_t k = 0; k < ring_length(side); ++k) {
+        if (level.ws.class_of[k] != next) continue;
+        const GridPoint p = ring_point(side, k);
+        f(next++, p);
+    }
+    for (uint32_t r = 1; r + 1 < side; ++r)
+        for (uint32_t c = 1; c + 1 < side; ++c) f(next++, GridPoint{r, c});
+}
+
+}  // namespace
+}  // namespace gim
+
+using namespace gim;
+
+const char* gim_status_text(gim_status status) {
+    switch (static_cast<Status>(status)) {
+        case Status::kNeedMoreInput:
+            return "the data ends too early";
+        case Status::kOk:
+            return "fine";
+        case Status::kNotGim:
+            return "not a .gim file";
+        case Status::kUnsupportedVersion:
+            return "made by a newer version: this reader does not know all of it";
+        case Status::kMalformed:
+            return "malformed: no writer produces such bytes";
+        case Status::kLimitExceeded:
+            return "larger than the caller's limits";
+        case Status::kBadArgument:
+            return "bad argument";
+        case Status::kScratchTooSmall:
+            return "scratch or output memory is too small";
+        case Status::kChecksum:
+            return "damaged: a checksum does not match";
+        case Status::kNoSuchLevel:
+            return "no such level: coarser than the coarsest one of this image";
+    }
+    return "unknown status";
+}
+
+gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limits, gim_info* info) {
+    if (!info || (!bytes && size > 0)) return code(Status::kBadArgument);
+    Header header;
+    const ContainerLimits l = limits_of(limits);
+    if (Status s = parse_header(span_of(bytes, size), l, &header); s != Status::kOk) return code(s);
+    *info = {};
+    info->version = kFormatVersion;
+    info->layout = header.layout;
+    info->coding = static_cast<uint32_t>(header.coding);
+    info->bits = header.bits;
+    info->image_count = header.image_count();
+    info->level_count = header.level_count;
+    info->chunk_count = header.chunk_count;
+    info->sample_count = header.sample_count;
+    info->file_size = header.file_size;
+    std::copy(header.origin.begin(), header.origin.end(), info->origin);
+    info->step = header.step;
+    info->quantizer = header.quantizer;
+    info->index_size = header.index_size;
+    info->limits = {l.max_samples, l.max_images, l.max_side};
+    return code(Status::kOk);
+}
+
+gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                               gim_level_info* level_info) {
+    if (!level_info) return code(Status::kBadArgument);
+    Level l;
+    if (Status s = open_level(info, bytes, size, image, level, &l); s != Status::kOk) return code(s);
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (Status s = find_level_chunk(l.header, level, &chunk, &offset); s != Status::kOk) return code(s);
+    *level_info = {};
+    level_info->side = l.side;
+    level_info->coarsest_level = l.coarsest;
+    level_info->vertex_count = l.class_count + (l.side - 2) * (l.side - 2);
+    level_info->triangle_count = 2 * (l.side - 1) * (l.side - 1);
+    level_info->prefix_size = offset + chunk.size;
+    level_info->scratch_size = scratch_size(l.side);
+    return code(Status::kOk);
+}
+
+gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                                float* positions, void* scratch, size_t scratch_bytes) {
+    return gim_decode_grid(info, bytes, size, image, level, positions, nullptr, nullptr, scratch, scratch_bytes);
+}
+
+gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                           float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
+                           size_t scratch_bytes) {
+    if (!positions) return code(Status::kBadArgument);
+    Level l;
+    if (Status s = decode(info, bytes, size, image, level, scratch, scratch_bytes, &l); s != Status::kOk)
+        return code(s);
+    for_each_vertex(l, [&](uint32_t v, GridPoint p) {
+        to_object(l.header, l.samples + (size_t{p.row} * l.side + p.column) * 3, positions + size_t{v} * 3);
+    });
+    if (normals) {
+        sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, l.ws.normals);
+        for_each_vertex(l, [&](uint32_t v, GridPoint p) {
+            std::copy_n(l.ws.normals + (size_t{p.row} * l.side + p.column) * 3, 3, normals + size_t{v} * 3);
+        });
+    }
+    if (texcoords) {
+        const float last = static_cast<float>(l.side - 1);
+        for_each_vertex(l, [&](uint32_t v, GridPoint p) {
+            texcoords[size_t{v} * 2] = static_cast<float>(p.column) / last;
+            texcoords[size_t{v} * 2 + 1] = static_cast<float>(p.row) / last;
+        });
+    }
+    if (triangles) {
+        const VertexNumbers numbers = {l.side, l.ws.class_of, l.class_count};
+        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.row_ids, triangles);
+    }
+    return code(Status::kOk);
+}
+
+gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                           float* positions, float* normals, uint32_t* triangles, void* scratch, size_t scratch_bytes) {
+    if (!positions) return code(Status::kBadArgument);
+    Level l;
+    if (Status s = decode(info, bytes, size, image, level, scratch, scratch_bytes, &l); s != Status::kOk)
+        return code(s);
+    for (size_t i = 0; i < size_t{l.side} * l.side; ++i) to_object(l.header, l.samples + i * 3, positions + i * 3);
+    if (normals) sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, normals);
+    if (triangles) {
+        const VertexNumbers numbers = {l.side, nullptr, 0};
+        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.row_ids, triangles);
+    }
+    return code(Status::kOk);
+}
+
+gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, uint32_t i, gim_chunk* chunk) {
+    if (!chunk) return code(Status::kBadArgument);
+    Header header;
+    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return code(s);
+    if (i >= header.chunk_count) return code(Status::kBadArgument);
+    ChunkWalk walk(header);
+    Chunk c;
+    uint64_t offset = 0;
+    uint32_t levels_seen = 0;
+    for (uint32_t k = 0; k <= i && walk.next(&c, &offset); ++k) levels_seen += c.type == ChunkType::kLevel;
+    *chunk = {};
+    const char* name = "????";
+    if (c.type == ChunkType::kSeams) name = "SEAM";
+    if (c.type == ChunkType::kLevel) name = "LEVL";
+    if (c.type == ChunkType::kText) name = "META";
+    std::memcpy(chunk->name, name, 4);
+    chunk->type = static_cast<uint32_t>(c.type);
+    chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.level_count - levels_seen) : -1;
+    chunk->offset = offset;
+    chunk->size = c.size;
+    chunk->raw_size = c.raw_size;
+    std::span<const uint8_t> payload;
+    chunk->intact = read_payload(span_of(bytes, size), c, offset, &payload) == Status::kOk;
+    return code(Status::kOk);
+}
+
+gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                          uint32_t* class_of, uint32_t* path_count) {
+    Level l;
+    if (Status s = open_level(info, bytes, size, image, level, &l); s != Status::kOk) return code(s);
+    if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
+    if (path_count) *path_count = l.seams.path_count;
+    return code(Status::kOk);
+}

@@ -1,0 +1,26 @@
+// Closes the cut of a decoded image: averages every class of glued samples and spreads the correction inwards.
+// After: Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 4, "Compression and Decompression". The paper
+// leaves the diffusion open; ours is a linear ramp over side/16 rings.  spec/gim-format.md, "Fusing".
+#pragma once
+
+#include <cstdint>
+
+namespace gim {
+
+// Work space of fuse.
+struct FuseWork {
+    float* sums = nullptr;        // 3 per class: sum of the differences to the class's first sample
+    uint32_t* first = nullptr;    // per class: ring index of its first sample
+    uint32_t* members = nullptr;  // per class: how many
+    float* outer = nullptr;       // corrections of one ring, 3 per ring sample
+    float* inner = nullptr;       // and of the next
+};
+
+// samples: side*side triples. class_of: per ring sample (ring_classes). Nothing changes where equals are equal already.
+// Cost O(side^2 / 4).
+void fuse(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples, const FuseWork& work);
+
+// How many rings below the rim get a part of the correction.
+uint32_t diffusion_width(uint32_t side);
+
+}  // namespace gim

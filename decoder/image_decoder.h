@@ -1,0 +1,42 @@
+// Samples of one level of one image: streams -> bands -> inverse wavelet -> unit positions -> closed seams.
+// A "unit" is one quantization step; position = origin + step * unit value.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "decoder/arena.h"
+#include "decoder/fuse.h"
+#include "decoder/synthesis.h"
+#include "format/container.h"
+#include "format/seam.h"
+
+namespace gim {
+
+// Everything that decoding one level needs, laid out in the caller's scratch.
+struct ImageWorkspace {
+    BandModels* models = nullptr;
+    BandWork band_work;
+    int32_t* bands[2] = {};  // of the level being decoded and of its parent, in turn
+    void* images[2] = {};    // int32_t or float triples, in turn; the requested level ends in images[0]
+    void* synthesis = nullptr;
+    uint32_t* class_of = nullptr;
+    FuseWork fuse;
+    float* normals = nullptr;
+    uint32_t* row_ids = nullptr;
+};
+
+// side: of the level that is asked for.
+ImageWorkspace lay_out(uint32_t side, Arena* arena);
+
+// Decodes the samples of a level, fused, into ws.images[0] as floats in units; fills ws.class_of.
+Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
+                    const SeamTable& seams, const ImageWorkspace& ws, float** samples);
+
+// The sideband of one image, checked. kMalformed also when its finest level is not closed.
+Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams);
+
+// The chunk that holds a level of all images.
+Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
+
+}  // namespace gim

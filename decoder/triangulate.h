@@ -1,0 +1,31 @@
+// Triangles and normals of a fused image.  spec/gim-format.md, "Surface".
+// After: Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 4 (shorter diagonal). Along the rim the diagonals
+// are chosen so that the glued mesh has no double edge (format/seam.h).
+#pragma once
+
+#include <cstdint>
+
+namespace gim {
+
+// The vertices of the closed mesh: first the ring's classes, then the inner samples row by row.
+struct VertexNumbers {
+    uint32_t side = 0;
+    const uint32_t* class_of = nullptr;  // per ring sample; nullptr: every sample is a vertex, in row-major order
+    uint32_t class_count = 0;
+
+    uint32_t vertex_count() const { return class_of ? class_count + (side - 2) * (side - 2) : side * side; }
+    // ids[0..side-1]: vertices of a row of samples.
+    void row(uint32_t r, uint32_t* ids) const;
+};
+
+// 2*(side-1)^2 triangles, counter-clockwise from outside, cell by cell. class_of decides the splits along the rim
+// whatever the numbering. row_ids: work space for 2*side numbers.
+void triangulate(const float* samples, uint32_t side, const uint32_t* class_of, const VertexNumbers& numbers,
+                 uint32_t* row_ids, uint32_t* triangles);
+
+// Unit normals of all side*side samples: cross product of the central differences (one-sided on the rim), summed over
+// glued samples; zero where that is zero. sums: work space for 3*class_count numbers.
+void sample_normals(const float* samples, uint32_t side, const uint32_t* class_of, uint32_t class_count, float* sums,
+                    float* normals);
+
+}  // namespace gim

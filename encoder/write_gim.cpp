@@ -1,0 +1,204 @@
+#include "encoder/write_gim.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "encoder/code_bands.h"
+#include "format/bytes.h"
+#include "format/checksum.h"
+#include "format/seam.h"
+#include "format/sideband_code.h"
+
+namespace gim {
+namespace {
+
+Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
+
+std::string image_name(size_t i) { return "image " + std::to_string(i); }
+
+// Empty when all is well.
+std::string complaint(std::span<const GeometryImage> images, const CodingParameters& p) {
+    if (images.empty()) return "no image to write";
+    if (images.size() > kMaxImages) return std::to_string(images.size()) + " images: a file holds at most 65536";
+    if (p.bits < kMinBits || p.bits > kMaxBits) return "bits " + std::to_string(p.bits) + ": choose 8 to 20";
+    for (size_t i = 0; i < images.size(); ++i) {
+        const GeometryImage& image = images[i];
+        if (!is_grid_side(image.side) || image.side < 3)
+            return image_name(i) + " has side " + std::to_string(image.side) + ": it must be 2^j+1, 3 to 16385";
+        if (image.positions.size() != size_t{image.side} * image.side)
+            return image_name(i) + " has " + std::to_string(image.positions.size()) + " positions, not side*side";
+        for (size_t s = 0; s < image.positions.size(); ++s) {
+            if (!image.positions[s].allFinite() || image.positions[s].cwiseAbs().maxCoeff() > double{kMaxOrigin})
+                return image_name(i) + ", row " + std::to_string(s / image.side) + ", column " +
+                       std::to_string(s % image.side) + ": position is not a finite number of reasonable size";
+        }
+        SeamTable seams;
+        if (image.sideband.paths.size() > kMaxCutPaths)
+            return image_name(i) + " has " + std::to_string(image.sideband.paths.size()) +
+                   " cut-paths, the format takes " + std::to_string(kMaxCutPaths);
+        if (build_seam_table(image.sideband, &seams) != Status::kOk)
+            return image_name(i) +
+                   ": the sideband is inconsistent (lengths must fill the ring, mates be mutual and equally long)";
+        if (!level_is_closed(seams, image.side))
+            return image_name(i) +
+                   ": glued as its sideband says, its samples are not a manifold mesh; use a larger side";
+    }
+    return {};
+}
+
+struct Box {
+    Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+};
+
+Box bounding_box(std::span<const GeometryImage> images) {
+    Box box;
+    for (const GeometryImage& image : images) {
+        for (const Vec3& p : image.positions) {
+            box.low = box.low.cwiseMin(p);
+            box.high = box.high.cwiseMax(p);
+        }
+    }
+    return box;
+}
+
+// Positions in units of the header's quantizer, as interleaved triples.
+template <class Sample>
+std::vector<Sample> to_units(const GeometryImage& image, const Header& header) {
+    std::vector<Sample> units;
+    units.reserve(image.positions.size() * 3);
+    const double most = std::exp2(header.bits) - 1;
+    for (const Vec3& p : image.positions) {
+        for (int k = 0; k < 3; ++k) {
+            const double unit = (p[k] - double{header.origin[static_cast<size_t>(k)]}) / double{header.step};
+            if constexpr (std::is_integral_v<Sample>) {
+                units.push_back(static_cast<Sample>(std::clamp(std::floor(unit + 0.5), 0.0, most)));
+            } else {
+                units.push_back(static_cast<Sample>(unit));
+            }
+        }
+    }
+    return units;
+}
+
+// The base is stored relative to the middle of the range.
+template <class Sample>
+void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
+    for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
+}
+
+struct Payload {
+    Chunk chunk;
+    std::vector<uint8_t> bytes;
+};
+
+Payload make_payload(ChunkType type, bool optional, std::vector<uint8_t> bytes) {
+    Payload p;
+    p.chunk.type = type;
+    p.chunk.optional = optional;
+    p.chunk.size = p.chunk.raw_size = bytes.size();
+    p.chunk.crc = crc16(bytes);
+    p.bytes = std::move(bytes);
+    return p;
+}
+
+// Compressed where that is smaller.
+Payload make_text_payload(const std::string& text) {
+    std::vector<uint8_t> raw(text.begin(), text.end());
+    std::vector<uint8_t> packed(ZSTD_compressBound(raw.size()));
+    const size_t size = ZSTD_compress(packed.data(), packed.size(), raw.data(), raw.size(), 19);
+    if (ZSTD_isError(size) || size + 2 >= raw.size()) return make_payload(ChunkType::kText, true, std::move(raw));
+    packed.resize(size);
+    Payload p = make_payload(ChunkType::kText, true, std::move(packed));
+    p.chunk.zstd = true;
+    p.chunk.raw_size = raw.size();
+    return p;
+}
+
+}  // namespace
+
+Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const CodingParameters& parameters) {
+    if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
+
+    GimWriter writer;
+    Header& header = writer.header_;
+    uint32_t largest = 0;
+    for (const GeometryImage& image : images) {
+        const auto exponent = static_cast<uint32_t>(std::countr_zero(image.side - 1));
+        writer.side_exponents_.push_back(static_cast<uint8_t>(exponent));
+        append_sideband(with_coarsest_node_grid(image.sideband), &writer.seams_);
+        largest = std::max(largest, exponent);
+    }
+    const uint32_t base = is_grid_side(parameters.base_side) && parameters.base_side > 2
+                              ? static_cast<uint32_t>(std::countr_zero(parameters.base_side - 1))
+                              : 4;
+    header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
+    header.bits = parameters.bits;
+    header.level_count = largest > base ? largest - base + 1 : 1;
+    writer.text_ = parameters.text;
+
+    // One isotropic step for the file. A surface that is a single point still needs a positive one.
+    const Box box = bounding_box(images);
+    const double extent = (box.high - box.low).maxCoeff();
+    const double smallest = std::max(double{kMinStep}, box.low.cwiseAbs().maxCoeff() * 0x1p-60);
+    header.step = static_cast<float>(std::max(extent / (std::exp2(parameters.bits) - 1), smallest));
+    for (int k = 0; k < 3; ++k) header.origin[static_cast<size_t>(k)] = static_cast<float>(box.low[k]);
+
+    for (const GeometryImage& image : images) {
+        if (parameters.lossless) {
+            writer.lossless_.push_back(analyse<Reversible53>(to_units<int32_t>(image, header), image.side));
+            subtract_middle(&writer.lossless_.back(), header.bits);
+        } else {
+            writer.lossy_.push_back(analyse<Irreversible97>(to_units<float>(image, header), image.side));
+            subtract_middle(&writer.lossy_.back(), header.bits);
+        }
+    }
+    return writer;
+}
+
+std::vector<uint8_t> GimWriter::write(double quantizer) const {
+    Header header = header_;
+    header.side_exponents = side_exponents_;
+    if (header.coding == Coding::kLossy) {
+        header.quantizer = std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
+    }
+
+    // One stream per image and level it has; a level's payload is a table of sizes, left out for a single image, and
+    // these.
+    std::vector<std::vector<uint8_t>> sizes(header.level_count), streams(header.level_count);
+    for (uint32_t i = 0; i < header.image_count(); ++i) {
+        Pyramid<int32_t> bands =
+            header.coding == Coding::kLossless ? lossless_[i] : quantize_bands(lossy_[i], header.quantizer);
+        const uint32_t levels = header.level_count_of(i);
+        const auto coded = code_bands(bands, levels);
+        for (uint32_t k = 0; k < levels; ++k) {
+            const uint32_t level = levels - 1 - k;
+            if (header.image_count() > 1) append_leb128(coded[k].size(), &sizes[level]);
+            streams[level].insert(streams[level].end(), coded[k].begin(), coded[k].end());
+        }
+    }
+
+    std::vector<Payload> payloads;
+    payloads.push_back(make_payload(ChunkType::kSeams, false, seams_));
+    for (uint32_t level = header.level_count; level-- > 0;) {
+        std::vector<uint8_t> payload = std::move(sizes[level]);
+        payload.insert(payload.end(), streams[level].begin(), streams[level].end());
+        payloads.push_back(make_payload(ChunkType::kLevel, false, std::move(payload)));
+    }
+    if (!text_.empty()) payloads.push_back(make_text_payload(text_));
+
+    std::vector<Chunk> chunks;
+    for (const Payload& p : payloads) chunks.push_back(p.chunk);
+    std::vector<uint8_t> file = serialize_header(header, chunks);
+    for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
+    return file;
+}
+
+Result<std::vector<uint8_t>> write_gim(std::span<const GeometryImage> images, const CodingParameters& parameters) {
+    GIM_TRY(writer, GimWriter::create(images, parameters));
+    return writer.write(parameters.quantizer);
+}
+
+}  // namespace gim

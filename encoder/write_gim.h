@@ -1,0 +1,45 @@
+// Geometry images -> a complete .gim file: quantization, wavelet, entropy coding, container.  spec/gim-format.md.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "encoder/geometry_image.h"
+#include "encoder/result.h"
+#include "encoder/wavelet_analysis.h"
+#include "format/container.h"
+
+namespace gim {
+
+struct CodingParameters {
+    bool lossless = true;  // the quantized image is kept exactly
+    uint32_t bits = 12;    // quantizer: bits per coordinate of the largest box extent, 8..20
+    double quantizer = 8;  // lossy: step of a coefficient of unit norm, in quantization steps; twice: about 6 dB less
+    uint32_t base_side = 17;  // side of the coarsest stored level; smaller ones cost about 7 bytes each
+    std::string text;         // goes into a META chunk unless empty; UTF-8
+};
+
+// All that does not depend on the quantizer, so that a search over quantizers does it once.
+class GimWriter {
+  public:
+    // Images: at least one, sides 2^j+1, finite positions, sidebands that close the finest level.
+    static Result<GimWriter> create(std::span<const GeometryImage> images, const CodingParameters& parameters);
+
+    // quantizer: as CodingParameters::quantizer; ignored by lossless coding. Cost O(samples).
+    std::vector<uint8_t> write(double quantizer) const;
+
+  private:
+    GimWriter() = default;
+
+    Header header_;
+    std::vector<uint8_t> side_exponents_, seams_;
+    std::string text_;
+    std::vector<Pyramid<int32_t>> lossless_;
+    std::vector<Pyramid<float>> lossy_;
+};
+
+Result<std::vector<uint8_t>> write_gim(std::span<const GeometryImage> images, const CodingParameters& parameters);
+
+}  // namespace gim

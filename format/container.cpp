@@ -1,0 +1,170 @@
+#include "format/container.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "format/checksum.h"
+#include "format/seam.h"
+
+namespace gim {
+namespace {
+
+constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
+constexpr size_t kCrcSize = 4;
+constexpr uint8_t kLossyFlag = 0x04, kReservedFlags = 0xF8, kLayoutMask = 0x03;
+
+bool parse_chunk(ByteReader* reader, Chunk* chunk) {
+    uint64_t tag = 0;
+    if (!reader->read_leb128(&tag) || tag >> 32 != 0 || !reader->read_leb128(&chunk->size)) return false;
+    chunk->optional = tag & 1;
+    chunk->zstd = tag & 2;
+    chunk->type = static_cast<ChunkType>(tag >> 2);
+    chunk->raw_size = chunk->size;
+    if (chunk->zstd && !reader->read_leb128(&chunk->raw_size)) return false;
+    return reader->read_u16(&chunk->crc);
+}
+
+bool in_range(float value, float low, float high) { return value >= low && value <= high; }  // false for a NaN
+
+// The chunks: SEAM once, then level_count times LEVL; META at most once; optional strangers anywhere.
+Status check_index(Header* header) {
+    ByteReader reader(header->index);
+    uint32_t seams = 0, levels = 0, texts = 0;
+    header->file_size = header->index_size;
+    header->chunk_count = 0;
+    while (reader.left() > 0) {
+        Chunk chunk;
+        if (!parse_chunk(&reader, &chunk)) return Status::kMalformed;
+        header->file_size += chunk.size;  // below 2^24 times 2^42: no overflow
+        ++header->chunk_count;
+        switch (chunk.type) {
+            case ChunkType::kSeams:
+                if (chunk.optional || chunk.zstd || seams++ > 0 || levels > 0) return Status::kMalformed;
+                break;
+            case ChunkType::kLevel:
+                if (chunk.optional || chunk.zstd || seams == 0) return Status::kMalformed;
+                ++levels;
+                break;
+            case ChunkType::kText:
+                if (!chunk.optional || texts++ > 0) return Status::kMalformed;
+                break;
+            default:
+                if (!chunk.optional) return Status::kUnsupportedVersion;
+        }
+    }
+    return seams == 1 && levels == header->level_count ? Status::kOk : Status::kMalformed;
+}
+
+}  // namespace
+
+Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header) {
+    const size_t seen = std::min(file.size(), kMagic.size());
+    if (!std::equal(kMagic.begin(), kMagic.begin() + static_cast<std::ptrdiff_t>(seen), file.begin()))
+        return Status::kNotGim;
+    if (file.size() < kPreambleSize) return Status::kNeedMoreInput;
+    if (file[kMagic.size()] != kFormatVersion) return Status::kUnsupportedVersion;
+
+    // The size of header and index comes first, so that nothing else is believed before its checksum.
+    ByteReader preamble(file);
+    uint64_t index_size = 0;
+    preamble.skip(kPreambleSize);
+    if (!preamble.read_leb128(&index_size)) {
+        return preamble.left() == 0 && preamble.position() < kPreambleSize + 6 ? Status::kNeedMoreInput
+                                                                               : Status::kMalformed;
+    }
+    if (index_size < preamble.position() + kCrcSize || index_size > kMaxIndexSize) return Status::kMalformed;
+    if (file.size() < index_size) return Status::kNeedMoreInput;
+    const size_t body = static_cast<size_t>(index_size) - kCrcSize;
+    ByteReader trailer(file.subspan(body, kCrcSize));
+    uint32_t crc = 0;
+    if (!trailer.read_u32(&crc) || crc32(file.first(body)) != crc) return Status::kChecksum;
+
+    *header = {};
+    header->index_size = static_cast<uint32_t>(index_size);
+    ByteReader reader(file.first(body));
+    reader.skip(preamble.position());
+    uint8_t kind = 0, bits = 0, levels = 0;
+    uint64_t images = 0;
+    if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels) || !reader.read_leb128(&images))
+        return Status::kMalformed;
+    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) != 0) return Status::kUnsupportedVersion;
+    if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels || images == 0 || images > kMaxImages)
+        return Status::kMalformed;
+    header->layout = kind & kLayoutMask;
+    header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
+    header->bits = bits;
+    header->level_count = levels;
+    if (images > limits.max_images) return Status::kLimitExceeded;
+
+    // At least one image has all the levels; all of them together stay within the caller's limit.
+    const size_t sides_at = reader.position();
+    if (!reader.skip(images)) return Status::kMalformed;
+    header->side_exponents = file.subspan(sides_at, images);
+    uint8_t largest = 0;
+    for (const uint8_t j : header->side_exponents) {
+        if (j < 1 || j > kMaxSideExponent) return Status::kMalformed;
+        const uint64_t side = (uint64_t{1} << j) + 1;
+        header->sample_count += side * side;  // at most 2^16 * 2^29
+        largest = std::max(largest, j);
+    }
+    if (largest < levels) return Status::kMalformed;
+    if ((1u << largest) + 1 > limits.max_side || header->sample_count > limits.max_samples)
+        return Status::kLimitExceeded;
+
+    for (float& o : header->origin) {
+        if (!reader.read_f32(&o) || !in_range(o, -kMaxOrigin, kMaxOrigin)) return Status::kMalformed;
+    }
+    if (!reader.read_f32(&header->step) || !in_range(header->step, kMinStep, kMaxStep)) return Status::kMalformed;
+    if (header->coding == Coding::kLossy &&
+        (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer)))
+        return Status::kMalformed;
+    header->index = file.subspan(reader.position(), body - reader.position());
+    return check_index(header);
+}
+
+bool ChunkWalk::next(Chunk* chunk, uint64_t* offset) {
+    if (reader_.left() == 0 || !parse_chunk(&reader_, chunk)) return false;
+    *offset = offset_;
+    offset_ += chunk->size;
+    return true;
+}
+
+Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t offset,
+                    std::span<const uint8_t>* payload) {
+    if (offset > file.size() || chunk.size > file.size() - offset) return Status::kNeedMoreInput;
+    *payload = file.subspan(static_cast<size_t>(offset), static_cast<size_t>(chunk.size));
+    return crc16(*payload) == chunk.crc ? Status::kOk : Status::kChecksum;
+}
+
+std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
+    std::vector<uint8_t> rest;  // everything after Index_Size
+    rest.push_back(static_cast<uint8_t>(header.layout | (header.coding == Coding::kLossy ? kLossyFlag : 0)));
+    rest.push_back(static_cast<uint8_t>(header.bits));
+    rest.push_back(static_cast<uint8_t>(header.level_count));
+    append_leb128(header.image_count(), &rest);
+    for (const uint8_t exponent : header.side_exponents) rest.push_back(exponent);
+    for (const float o : header.origin) append_f32(o, &rest);
+    append_f32(header.step, &rest);
+    if (header.coding == Coding::kLossy) append_f32(header.quantizer, &rest);
+    for (const Chunk& chunk : chunks) {
+        append_leb128(
+            uint64_t{static_cast<uint32_t>(chunk.type)} << 2 | (chunk.zstd ? 2u : 0u) | (chunk.optional ? 1u : 0u),
+            &rest);
+        append_leb128(chunk.size, &rest);
+        if (chunk.zstd) append_leb128(chunk.raw_size, &rest);
+        append_u16(chunk.crc, &rest);
+    }
+
+    // Index_Size counts itself.
+    std::vector<uint8_t> file(kMagic.begin(), kMagic.end());
+    uint64_t index_size = kPreambleSize + 1 + rest.size() + kCrcSize;
+    for (uint64_t limit = 0x80; index_size >= limit; limit <<= 7) ++index_size;
+    file.reserve(index_size);
+    file.push_back(kFormatVersion);
+    append_leb128(index_size, &file);
+    for (const uint8_t byte : rest) file.push_back(byte);
+    append_u32(crc32(file), &file);
+    return file;
+}
+
+}  // namespace gim

@@ -1,0 +1,100 @@
+// The container: magic number, header, chunk index.  spec/gim-format.md, "File".
+// Parsing and serialising stand side by side; parsing allocates nothing and trusts nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/bytes.h"
+#include "format/status.h"
+
+namespace gim {
+
+// The first byte stops text tools, the line ends show conversions, the last one stops a listing (as PNG's does).
+inline constexpr std::array<uint8_t, 7> kMagic = {0x89, 'G', 'I', 'M', 0x0D, 0x0A, 0x1A};
+inline constexpr uint8_t kFormatVersion = 1;
+
+enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };
+
+enum class ChunkType : uint32_t {
+    kSeams = 0,  // SEAM, critical: the sidebands of all images
+    kLevel = 1,  // LEVL, critical: one level of all images; coarsest first
+    kText = 2,   // META, optional: UTF-8 text about the file
+};
+
+struct ContainerLimits {
+    uint64_t max_samples = uint64_t{1} << 26;
+    uint32_t max_images = 65536;
+    uint32_t max_side = 16385;
+};
+
+inline constexpr uint32_t kMinBits = 8, kMaxBits = 20;
+inline constexpr uint32_t kMaxImages = 65536;
+inline constexpr uint32_t kMaxLevels = 14;
+inline constexpr uint64_t kMaxIndexSize = uint64_t{1} << 24;
+inline constexpr float kMaxOrigin = 0x1p100f;                              // greatest absolute value
+inline constexpr float kMinStep = 0x1p-100f, kMaxStep = 0x1p76f;           // object units per unit
+inline constexpr float kMinQuantizer = 0x1p-16f, kMaxQuantizer = 0x1p20f;  // units
+
+struct Chunk {
+    ChunkType type = ChunkType::kText;
+    bool optional = false;  // a reader that does not know the type may skip it
+    bool zstd = false;      // the payload is one zstd frame of a text of raw_size bytes
+    uint64_t size = 0;
+    uint64_t raw_size = 0;  // only with zstd; otherwise equal to size
+    uint16_t crc = 0;       // of the stored payload
+};
+
+// Header fields as stored; `side_exponents` and `index` point into the parsed bytes.
+struct Header {
+    uint8_t layout = 0;
+    Coding coding = Coding::kLossless;
+    uint32_t bits = 12;
+    uint32_t level_count = 0;
+    std::array<float, 3> origin{};
+    float step = 1;
+    float quantizer = 0;                      // kLossy only
+    std::span<const uint8_t> side_exponents;  // one per image; side = 2^j + 1
+
+    // Derived.
+    std::span<const uint8_t> index;
+    uint32_t chunk_count = 0;
+    uint32_t index_size = 0;    // bytes from the start of the file to the first chunk
+    uint64_t sample_count = 0;  // of all images
+    uint64_t file_size = 0;
+
+    uint32_t image_count() const { return static_cast<uint32_t>(side_exponents.size()); }
+    uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
+    // Levels 0 .. level_count_of(image)-1 are stored; the coarsest of them has at least 3 samples a side.
+    uint32_t level_count_of(uint32_t image) const {
+        return side_exponents[image] < level_count ? side_exponents[image] : level_count;
+    }
+};
+
+// Reads and checks header and index at the start of `file`. kNeedMoreInput only while the index is not there as a
+// whole.
+Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header);
+
+// Walks the index of a parsed header.
+class ChunkWalk {
+  public:
+    explicit ChunkWalk(const Header& header) : reader_(header.index), offset_(header.index_size) {}
+    // False past the last chunk. `offset`: of the payload, from the start of the file.
+    bool next(Chunk* chunk, uint64_t* offset);
+
+  private:
+    ByteReader reader_;
+    uint64_t offset_;
+};
+
+// The payload of a chunk, checked. kNeedMoreInput when the file ends before its end, kChecksum when it is damaged.
+Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t offset,
+                    std::span<const uint8_t>* payload);
+
+// Bytes from the magic number to the index's checksum. Derived header fields are ignored.
+std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks);
+
+}  // namespace gim

@@ -1,0 +1,105 @@
+// The two wavelets as lifting steps on rows, and the quantizer steps of their bands.  spec/gim-format.md, "Wavelets".
+// A side of 2h+1 samples splits into h+1 low (even) and h high (odd) ones. Every high sample lies between two low ones;
+// a low one at the end meets its only high neighbour twice, which is symmetric extension. After: Daubechies, Sweldens.
+// Factoring Wavelet Transforms into Lifting Steps. 1998 (9/7); Calderbank, Daubechies, Sweldens, Yeo. Wavelet
+// Transforms that Map Integers to Integers. 1998 (5/3).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "format/band_code.h"
+
+namespace gim {
+
+enum class Direction { kAnalysis, kSynthesis };
+
+// Reversible 5/3 on integers; sums wrap, so that hostile values are harmless. Shifts round down.
+struct Reversible53 {
+    using Sample = int32_t;
+    static constexpr int kSteps = 2;  // 0: high from low, 1: low from high
+
+    template <Direction D>
+    static Sample lift(int step, Sample x, Sample a, Sample b) {
+        const uint32_t sum = static_cast<uint32_t>(a) + static_cast<uint32_t>(b);
+        const int32_t change = step == 0 ? -(static_cast<int32_t>(sum) >> 1) : static_cast<int32_t>(sum + 2u) >> 2;
+        const uint32_t u = static_cast<uint32_t>(change);
+        return static_cast<int32_t>(static_cast<uint32_t>(x) + (D == Direction::kAnalysis ? u : 0u - u));
+    }
+};
+
+// 9/7 on binary32, each operation rounded: x + c * (a + b), or minus.
+struct Irreversible97 {
+    using Sample = float;
+    static constexpr int kSteps = 4;  // even steps: high from low; odd steps: low from high
+    static constexpr std::array<float, 4> kFactor = {-1.586134342f, -0.052980118f, 0.882911076f, 0.443506852f};
+    // Low samples carry this factor inside one level of both directions; outside, a constant image keeps its value.
+    static constexpr float kLowGain = 1.513328328f;
+
+    template <Direction D>
+    static Sample lift(int step, Sample x, Sample a, Sample b) {
+        const float change = kFactor[static_cast<size_t>(step)] * (a + b);
+        return D == Direction::kAnalysis ? x + change : x - change;
+    }
+};
+
+// target[i] = lift(target[i], a[i], b[i]).
+template <class Wavelet, Direction D>
+inline void lift_row(int step, typename Wavelet::Sample* __restrict target, const typename Wavelet::Sample* a,
+                     const typename Wavelet::Sample* b, size_t count) {
+    switch (step) {  // a constant step lets the loop be vectorised
+        case 0:
+            for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(0, target[i], a[i], b[i]);
+            break;
+        case 1:
+            for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(1, target[i], a[i], b[i]);
+            break;
+        case 2:
+            if constexpr (Wavelet::kSteps > 2)
+                for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(2, target[i], a[i], b[i]);
+            break;
+        default:
+            if constexpr (Wavelet::kSteps > 2)
+                for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(3, target[i], a[i], b[i]);
+    }
+}
+
+// L2 norms of the 9/7 synthesis functions, `depth` levels (1..14) below full resolution: of the low band, of the two
+// bands high in one direction, of the band high in both.
+struct BandNorms {
+    float low, edge, diagonal;
+};
+inline constexpr std::array<BandNorms, 14> kBandNorms = {{
+    {1.96590731f, 1.01128648f, 0.787260609f},
+    {4.12240987f, 1.99681246f, 1.46371508f},
+    {8.41674418f, 4.18336733f, 3.14659636f},
+    {16.9355721f, 8.53411551f, 6.50804166f},
+    {33.9249268f, 17.1667258f, 13.1458654f},
+    {67.8771653f, 34.3852016f, 26.3604376f},
+    {135.768047f, 68.7966629f, 52.755815f},
+    {271.542961f, 137.606512f, 105.529185f},
+    {543.089357f, 275.219624f, 211.067159f},
+    {1086.18043f, 550.442549f, 422.138713f},
+    {2172.36172f, 1100.88675f, 844.279625f},
+    {4344.72387f, 2201.77432f, 1688.56035f},
+    {8689.44795f, 4403.54906f, 3377.12125f},
+    {17378.896f, 8807.09832f, 6754.24277f},
+}};
+
+// Step of a band's uniform quantizer: quantizer / norm. depth 1: the finest bands of the image.
+inline float low_band_step(float quantizer, uint32_t depth) { return quantizer / kBandNorms[depth - 1].low; }
+inline float band_step(float quantizer, uint32_t depth, Orientation orientation) {
+    const BandNorms& norms = kBandNorms[depth - 1];
+    return quantizer / (orientation == Orientation::kDiagonal ? norms.diagonal : norms.edge);
+}
+
+// The value that a quantized coefficient stands for lies this part of a step nearer to zero than the bin's middle.
+inline constexpr float kReconstructionShift = 0.0625f;
+
+inline float dequantize(int32_t q, float step) {
+    const float shift = q > 0 ? -kReconstructionShift : q < 0 ? kReconstructionShift : 0.0f;
+    return (static_cast<float>(q) + shift) * step;
+}
+
+}  // namespace gim
