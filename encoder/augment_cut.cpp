@@ -1,7 +1,8 @@
 #include "encoder/augment_cut.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <limits>
 
 #include "encoder/circle_map.h"
 #include "encoder/parametrize.h"
@@ -19,24 +20,19 @@ struct Surface {
     const Topology& topology;
 };
 
-// Stretch efficiency of the best map to the square that this cut allows.
-Result<double> judge(const Surface& surface, const CutEdges& cut, const BoundaryMapOptions& options) {
-    GIM_TRY(opened, open_mesh(surface.mesh, surface.topology, cut));
-    GIM_TRY(boundary, map_boundary(std::move(opened), options));
-    GIM_TRY(uv, parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, options.side), {}));
-    return stretch_efficiency(boundary.opened.mesh, uv, 1.0);
-}
+// A cut with the map to the square that it allows. Efficiency 0: none was found.
+struct State {
+    CutEdges cut;
+    double efficiency = 0;
+    uint32_t worst = kNone;  // the vertex off the cut where this map stretches most
+    std::vector<AugmentStep> steps;
+};
 
-// The vertex off the cut at the triangle of greatest stretch under the circle map; kNone when every vertex is on the
-// cut.
-uint32_t find_extremum(const Surface& surface, const CutEdges& cut) {
-    auto opened = open_mesh(surface.mesh, surface.topology, cut);
-    if (!opened.ok()) return kNone;
-    const OpenedMesh& disk = opened.value();
-    const std::vector<Vec2> uv = circle_map(disk);
-    if (uv.empty()) return kNone;
+// The vertex off the cut at the triangle of greatest stretch; kNone when there is none.
+uint32_t most_stretched(const Surface& surface, const OpenedMesh& disk, const std::vector<Vec2>& uv,
+                        const CutEdges& cut) {
     const std::vector<uint32_t> valence = cut_valence(surface.mesh, surface.topology, cut);
-    uint32_t extremum = kNone;
+    uint32_t worst = kNone;
     double most = -1;
     for (const Triangle& t : disk.mesh.triangles) {
         const FaceMetric metric =
@@ -45,13 +41,49 @@ uint32_t find_extremum(const Surface& surface, const CutEdges& cut) {
         const double stretch = stretch_energy(metric, uv[t[0]], uv[t[1]], uv[t[2]]) / metric.weight;
         if (stretch <= most) continue;
         for (const uint32_t v : t) {
-            if (valence[disk.source[v]] != 0) continue;
-            extremum = disk.source[v];
+            const uint32_t source = disk.source[v];
+            if (source == kNone || valence[source] != 0) continue;
+            worst = source;
             most = stretch;
             break;
         }
     }
-    return extremum;
+    return worst;
+}
+
+// Maps the surface to the square along this cut.
+void judge(const Surface& surface, const BoundaryMapOptions& options, State& state) {
+    state.efficiency = 0;
+    auto opened = open_mesh(surface.mesh, surface.topology, state.cut);
+    if (!opened.ok()) return;
+    auto laid = map_boundary(std::move(opened.value()), options);
+    if (!laid.ok()) return;
+    const SquareBoundary& boundary = laid.value();
+    const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, options.side), {});
+    if (!uv.ok()) return;
+    state.efficiency = stretch_efficiency(boundary.opened.mesh, uv.value(), 1.0);
+    state.worst = most_stretched(surface, boundary.opened, uv.value(), state.cut);
+}
+
+// The vertex off the cut at the triangle of greatest stretch under the circle map; kNone when every vertex is on the
+// cut.
+uint32_t find_extremum(const Surface& surface, const CutEdges& cut) {
+    const auto opened = open_mesh(surface.mesh, surface.topology, cut);
+    if (!opened.ok()) return kNone;
+    const std::vector<Vec2> uv = circle_map(opened.value());
+    return uv.empty() ? kNone : most_stretched(surface, opened.value(), uv, cut);
+}
+
+// The vertex farthest from the cut along edges.
+uint32_t find_farthest(const Surface& surface, const CutEdges& cut) {
+    std::vector<uint32_t> sources;
+    const std::vector<uint32_t> valence = cut_valence(surface.mesh, surface.topology, cut);
+    for (uint32_t v = 0; v < valence.size(); ++v) {
+        if (valence[v] != 0) sources.push_back(v);
+    }
+    const std::vector<double> distance = edge_distance(surface.mesh, surface.topology, sources);
+    const auto farthest = std::max_element(distance.begin(), distance.end());
+    return *farthest > 0 ? static_cast<uint32_t>(farthest - distance.begin()) : kNone;
 }
 
 // The shortest path from the cut to v, added to the cut.
@@ -97,30 +129,87 @@ bool is_sphere(const Surface& surface) {
     return closed && static_cast<int64_t>(surface.mesh.positions.size()) - faces / 2 == 2;
 }
 
-Result<FoundCut> search(const Surface& surface, const AugmentOptions& options, const Progress& progress) {
-    FoundCut best;
-    best.cut = straighten_cut(surface.mesh, surface.topology, initial_cut(surface.mesh, surface.topology, 0));
-    if (is_sphere(surface)) best.cut = restart_at_extremum(surface, best.cut, best.steps);
-    GIM_TRY(first_efficiency, judge(surface, best.cut, options.boundary));
-    best.steps.push_back({first_efficiency, kNone});
+// Where the next augmentation goes.
+enum class Aim {
+    kCircleMap,  // greatest stretch under the circle map: the paper's
+    kSquareMap,  // greatest stretch under the current map to the square
+    kFarthest,   // greatest distance from the cut
+};
 
-    FoundCut trial = best;
-    double best_efficiency = first_efficiency;
+uint32_t pick(const Surface& surface, const State& state, Aim aim) {
+    switch (aim) {
+        case Aim::kCircleMap:
+            return find_extremum(surface, state.cut);
+        case Aim::kSquareMap:
+            return state.worst;
+        case Aim::kFarthest:
+            return find_farthest(surface, state.cut);
+    }
+    return kNone;
+}
+
+// The best cut on the way that follows one aim throughout.
+State follow(const Surface& surface, const AugmentOptions& options, const State& start, Aim aim) {
+    State best = start, trial = start;
     for (uint32_t i = 0, misses = 0; i < options.most_paths && misses < options.patience; ++i) {
-        if (progress) progress(Stage::kCut, double(i) / options.most_paths);
-        const uint32_t extremum = find_extremum(surface, trial.cut);
+        const uint32_t extremum = pick(surface, trial, aim);
         if (extremum == kNone) break;
         trial.cut = extend_cut(surface, trial.cut, extremum);
-        const Result<double> efficiency = judge(surface, trial.cut, options.boundary);
-        if (!efficiency.ok()) break;  // more cut-paths than the ring can hold
-        trial.steps.push_back({efficiency.value(), extremum});
-        if (efficiency.value() <= best_efficiency) {
-            ++misses;
-            continue;
+        judge(surface, options.boundary, trial);
+        if (trial.efficiency == 0) break;  // more cut-paths than the ring can hold
+        trial.steps.push_back({trial.efficiency, extremum});
+        misses = trial.efficiency > best.efficiency ? 0 : misses + 1;
+        if (misses == 0) best = trial;
+    }
+    return best;
+}
+
+// Faces spread over the surface, each far from those before.
+std::vector<uint32_t> spread_seeds(const Surface& surface, uint32_t count) {
+    std::vector<uint32_t> seeds{0}, vertices{surface.mesh.triangles[0][0]};
+    while (seeds.size() < count) {
+        const std::vector<double> distance = edge_distance(surface.mesh, surface.topology, vertices);
+        const auto v = static_cast<uint32_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+        vertices.push_back(v);
+        seeds.push_back(face_of(surface.topology.outgoing[v]));
+    }
+    return seeds;
+}
+
+// The best initial cut: any seed gives one, and on surfaces of higher genus they differ much.
+State start_cut(const Surface& surface, const AugmentOptions& options) {
+    const bool sphere = is_sphere(surface);
+    const std::vector<uint32_t> seeds = spread_seeds(surface, sphere ? 1 : options.seeds);
+    std::vector<State> states(seeds.size());
+    tbb::parallel_for(size_t{0}, seeds.size(), [&](size_t i) {
+        State& state = states[i];
+        state.cut = initial_cut(surface.mesh, surface.topology, seeds[i]);
+        if (sphere) {
+            state.cut = restart_at_extremum(surface, state.cut, state.steps);
+        } else {
+            state.cut =
+                straighten_cut(surface.mesh, surface.topology, shorten_cut(surface.mesh, surface.topology, state.cut));
         }
-        misses = 0;
-        best = trial;
-        best_efficiency = efficiency.value();
+        judge(surface, options.boundary, state);
+        state.steps.push_back({state.efficiency, kNone});
+    });
+    return *std::max_element(states.begin(), states.end(),
+                             [](const State& a, const State& b) { return a.efficiency < b.efficiency; });
+}
+
+// Follows every aim from the same start and keeps the best; again from there, as long as it helps.
+State search(const Surface& surface, const AugmentOptions& options, const Progress& progress) {
+    State best = start_cut(surface, options);
+    constexpr std::array<Aim, 3> kAims{Aim::kCircleMap, Aim::kSquareMap, Aim::kFarthest};
+    for (double before = -1; best.efficiency > before;) {
+        before = best.efficiency;
+        std::array<State, kAims.size()> ends;
+        tbb::parallel_for(size_t{0}, kAims.size(),
+                          [&](size_t i) { ends[i] = follow(surface, options, best, kAims[i]); });
+        for (State& end : ends) {
+            if (end.efficiency > best.efficiency) best = std::move(end);
+        }
+        if (progress) progress(Stage::kCut, best.efficiency);
     }
     return best;
 }
@@ -179,6 +268,14 @@ class CutRefiner {
     CutEdges cut_;
 };
 
+double mean_edge_length(const Mesh& mesh) {
+    double sum = 0;
+    for (const Triangle& t : mesh.triangles) {
+        for (size_t i = 0; i < 3; ++i) sum += (mesh.positions[t[i]] - mesh.positions[t[(i + 1) % 3]]).norm();
+    }
+    return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
+}
+
 }  // namespace
 
 Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const AugmentOptions& options,
@@ -187,18 +284,23 @@ Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const Augm
     simplify(hierarchy, mesh.positions, {options.coarse_vertices, false, {}});
     const ProgressiveMesh::Compacted coarse = hierarchy.compact(mesh.positions);
     const Topology coarse_topology = build_topology(coarse.mesh);
-    GIM_TRY(found, search({coarse.mesh, coarse_topology}, options, progress));
+    State state = search({coarse.mesh, coarse_topology}, options, progress);
+    FoundCut found{std::move(state.cut), std::move(state.steps)};
 
     CutEdges marks(topology.twin.size(), 0);
     for (size_t h = 0; h < found.cut.size(); ++h) marks[3 * coarse.faces[h / 3] + h % 3] = found.cut[h];
+    StraightenOptions straighten;
+    straighten.widest = 2 * mean_edge_length(coarse.mesh);
     for (AugmentStep& step : found.steps) {
-        if (step.extremum != kNone) step.extremum = coarse.vertices[step.extremum];
+        if (step.extremum == kNone) continue;
+        step.extremum = coarse.vertices[step.extremum];
+        straighten.fixed.push_back(step.extremum);
     }
-    found.cut = straighten_cut(mesh, topology, CutRefiner(hierarchy, std::move(marks)).run());
+    found.cut = straighten_cut(mesh, topology, CutRefiner(hierarchy, std::move(marks)).run(), straighten);
     if (!opens_to_disk(mesh, topology, found.cut)) {
         return Error{Stage::kCut, "the cut found on the coarse mesh does not open the full mesh into a disk"};
     }
-    return std::move(found);
+    return found;
 }
 
 }  // namespace gim

@@ -18,6 +18,7 @@ namespace gim {
 struct AugmentOptions {
     BoundaryMapOptions boundary;      // of the final image: the search judges maps to the same square
     uint32_t coarse_vertices = 3000;  // size of the mesh searched on; more see finer extrema, time grows with it
+    uint32_t seeds = 6;               // initial cuts tried
     uint32_t most_paths = 40;         // augmentations at most
     uint32_t patience = 3;            // augmentations without gain before giving up
 };

@@ -75,54 +75,35 @@ void trim(const Mesh& mesh, const Topology& topology, CutEdges& cut) {
     }
 }
 
-// Vertices within `radius` of the path's vertices, along edges.
-std::vector<uint8_t> band(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& path,
-                          double radius) {
-    std::vector<uint8_t> inside(mesh.positions.size(), 0);
-    std::vector<double> distance(mesh.positions.size(), kInfinity);
-    MinQueue queue;
-    for (const uint32_t h : path) {
-        for (const uint32_t v : {from(mesh, h), to(mesh, h)}) {
-            if (distance[v] == 0) continue;
-            distance[v] = 0;
-            queue.push({0, v});
-        }
-    }
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (inside[v]) continue;
-        inside[v] = 1;
-        for_each_outgoing(topology, v, [&](uint32_t h) {
-            const uint32_t w = to(mesh, h);
-            const double reach = d + (mesh.positions[v] - mesh.positions[w]).norm();
-            if (reach > radius || reach >= distance[w]) return;
-            distance[w] = reach;
-            queue.push({reach, w});
-        });
-    }
-    return inside;
-}
-
 double path_length(const Mesh& mesh, const std::vector<uint32_t>& path) {
     double length = 0;
     for (const uint32_t h : path) length += (mesh.positions[to(mesh, h)] - mesh.positions[from(mesh, h)]).norm();
     return length;
 }
 
-// Every cut-path once (not its mate), as half-edges of M in order; input boundaries left out. A path that returns to
-// its own cut-node comes in two halves, so that its ends differ.
-std::vector<std::vector<uint32_t>> cut_paths(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
+std::vector<uint32_t> vertices_of(const Mesh& mesh, const std::vector<uint32_t>& path) {
+    std::vector<uint32_t> vertices{from(mesh, path.front())};
+    for (const uint32_t h : path) vertices.push_back(to(mesh, h));
+    return vertices;
+}
+
+// Every cut-path once (not its mate), as half-edges of M in order; input boundaries left out. Paths end at cut-nodes
+// and at fixed vertices. A path that returns to its own begin comes in two halves, so that its ends differ.
+std::vector<std::vector<uint32_t>> cut_paths(const Mesh& mesh, const Topology& topology, const CutEdges& cut,
+                                             const std::vector<uint32_t>& fixed) {
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);
+    std::vector<uint8_t> end(valence.size());
+    for (size_t v = 0; v < end.size(); ++v) end[v] = valence[v] != 2;
+    for (const uint32_t v : fixed) end[v] = 1;
     std::vector<uint8_t> seen(topology.twin.size(), 0);
     std::vector<std::vector<uint32_t>> paths;
     for (uint32_t h = 0; h < topology.twin.size(); ++h) {
-        if (topology.twin[h] == kNone || !cut[h] || seen[h] || valence[from(mesh, h)] == 2) continue;
+        if (topology.twin[h] == kNone || !cut[h] || seen[h] || !end[from(mesh, h)]) continue;
         std::vector<uint32_t> path;
         for (uint32_t e = h;; e = next_on_cut(topology, cut, e)) {
             path.push_back(e);
             seen[e] = seen[topology.twin[e]] = 1;
-            if (valence[to(mesh, e)] != 2) break;
+            if (end[to(mesh, e)]) break;
         }
         if (from(mesh, path.front()) == to(mesh, path.back())) {
             const auto middle = path.begin() + static_cast<std::ptrdiff_t>(path.size() / 2);
@@ -144,6 +125,36 @@ std::vector<uint32_t> shorter_path(const Mesh& mesh, const Topology& topology, c
     std::vector<uint32_t> found = shortest_path(mesh, topology, {from(mesh, path.front())}, goal, inside);
     if (found.empty() || path_length(mesh, found) >= path_length(mesh, path) * (1 - 1e-9)) return {};
     return found;
+}
+
+// Boundary loop of each vertex, numbered from 0; kNone inside. Returns how many loops there are.
+uint32_t label_loops(const Mesh& mesh, const Topology& topology, std::vector<uint32_t>& loop) {
+    loop.assign(mesh.positions.size(), kNone);
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < loop.size(); ++v) {
+        const uint32_t first = topology.outgoing[v];
+        if (first == kNone || topology.twin[first] != kNone || loop[v] != kNone) continue;
+        for (uint32_t w = v; loop[w] == kNone; w = to(mesh, topology.outgoing[w])) loop[w] = count;
+        ++count;
+    }
+    return count;
+}
+
+// The shortest path that joins the two boundary loops of the surface opened along `rest`; empty when there are not two.
+// Faces keep their numbers when a mesh is split, so the half-edges are those of the mesh itself.
+std::vector<uint32_t> bridge_loops(const Mesh& mesh, const Topology& topology, const CutEdges& rest) {
+    const SplitMesh split = split_along(mesh, topology, rest);
+    const Topology opened = build_topology(split.mesh);
+    std::vector<uint32_t> loop;
+    if (label_loops(split.mesh, opened, loop) != 2) return {};
+    std::vector<uint32_t> sources;
+    std::vector<uint8_t> goal(loop.size()), inside(loop.size());
+    for (uint32_t v = 0; v < loop.size(); ++v) {
+        if (loop[v] == 0) sources.push_back(v);
+        goal[v] = loop[v] == 1;
+        inside[v] = loop[v] == kNone;
+    }
+    return shortest_path(split.mesh, opened, sources, goal, inside);
 }
 
 }  // namespace
@@ -215,15 +226,45 @@ CutEdges initial_cut(const Mesh& mesh, const Topology& topology, uint32_t seed_t
     return cut;
 }
 
-CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
+std::vector<double> edge_distance(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources) {
+    std::vector<double> distance(mesh.positions.size(), kInfinity);
+    std::vector<uint8_t> done(mesh.positions.size(), 0);
+    MinQueue queue;
+    for (const uint32_t v : sources) {
+        distance[v] = 0;
+        queue.push({0, v});
+    }
+    while (!queue.empty()) {
+        const uint32_t v = queue.top().element;
+        queue.pop();
+        if (done[v]) continue;
+        done[v] = 1;
+        const auto relax = [&](uint32_t w) {
+            const double reach = distance[v] + (mesh.positions[v] - mesh.positions[w]).norm();
+            if (reach >= distance[w]) return;
+            distance[w] = reach;
+            queue.push({reach, w});
+        };
+        for_each_outgoing(topology, v, [&](uint32_t h) {
+            relax(to(mesh, h));
+            if (topology.twin[prev(h)] == kNone) relax(from(mesh, prev(h)));
+        });
+    }
+    return distance;
+}
+
+CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut,
+                        const StraightenOptions& options) {
     CutEdges result = cut;
-    for (const std::vector<uint32_t>& path : cut_paths(mesh, topology, cut)) {
+    for (const std::vector<uint32_t>& path : cut_paths(mesh, topology, cut, options.fixed)) {
         CutEdges rest = result;
         mark_path(topology, path, 0, rest);
         const double length = path_length(mesh, path);
-        for (const double radius : {kInfinity, length / 4, length / 16, length / 64}) {
-            const std::vector<uint8_t> inside = radius == kInfinity ? std::vector<uint8_t>(mesh.positions.size(), 1)
-                                                                    : band(mesh, topology, path, radius);
+        const std::vector<double> distance = edge_distance(mesh, topology, vertices_of(mesh, path));
+        for (const double part : {1.0, 0.25, 1.0 / 16, 1.0 / 64}) {
+            const double radius = part < 1 ? part * std::min(options.widest, length) : options.widest;
+            std::vector<uint8_t> inside(mesh.positions.size());
+            for (size_t v = 0; v < inside.size(); ++v) inside[v] = distance[v] <= radius;
             const std::vector<uint32_t> found = shorter_path(mesh, topology, rest, path, inside);
             if (found.empty()) continue;
             CutEdges trial = rest;
@@ -232,6 +273,30 @@ CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdg
             result = std::move(trial);
             break;
         }
+    }
+    return result;
+}
+
+CutEdges shorten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
+    constexpr int kMostPasses = 8;
+    constexpr double kLeastGain = 1e-3;  // of a path's length
+    CutEdges result = cut;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+        bool gained = false;
+        for (const std::vector<uint32_t>& path : cut_paths(mesh, topology, result, {})) {
+            // An earlier exchange may have taken a part of this path, or given it a new cut-node in the middle.
+            if (std::any_of(path.begin(), path.end(), [&](uint32_t h) { return !result[h]; })) continue;
+            CutEdges rest = result;
+            mark_path(topology, path, 0, rest);
+            const std::vector<uint32_t> bridge = bridge_loops(mesh, topology, rest);
+            if (bridge.empty() || path_length(mesh, bridge) > (1 - kLeastGain) * path_length(mesh, path)) continue;
+            mark_path(topology, bridge, 1, rest);
+            trim(mesh, topology, rest);
+            if (!opens_to_disk(mesh, topology, rest)) continue;
+            result = std::move(rest);
+            gained = true;
+        }
+        if (!gained) break;
     }
     return result;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "encoder/mesh.h"
@@ -15,16 +16,30 @@ namespace gim {
 // without being marked. In: connected. O(F log F).
 CutEdges initial_cut(const Mesh& mesh, const Topology& topology, uint32_t seed_triangle);
 
+struct StraightenOptions {
+    double widest = std::numeric_limits<double>::infinity();  // object units: how far a path may move from where it was
+    std::vector<uint32_t> fixed;                              // vertices that the cut must keep passing through
+};
+
 // Replaces each cut-path by a shorter one between the same cut-nodes, as long as the cut still opens the mesh into a
-// disk: first a path that is free to go anywhere off the cut, then one in ever narrower bands around the old path.
-// O(paths * F) in all. We differ from the paper in that the band may be as wide as the surface; the disk test makes
-// that safe.
-CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
+// disk: first within the widest band around the old path, then within ever narrower ones. O(paths * F) in all. We
+// differ from the paper in that the band may be as wide as the surface; the disk test makes that safe.
+CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut,
+                        const StraightenOptions& options = {});
+
+// Exchanges cut-paths for shorter ones whose ends may lie elsewhere: without a path that is not dangling the opened
+// surface is an annulus, and the shortest path between its two boundary loops makes it a disk again. Repeats until
+// nothing is gained. The cut must open the mesh into a disk; it still does afterwards. O(passes * paths * F log F):
+// meant for coarse meshes.
+CutEdges shorten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
 // The shortest edge path from any vertex of `sources` to a vertex v with goal[v], through vertices with allowed[v]
 // (goals need not be allowed); half-edges in order, empty if there is none. Path length in object units. O(E log E).
 std::vector<uint32_t> shortest_path(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources,
                                     const std::vector<uint8_t>& goal, const std::vector<uint8_t>& allowed);
+
+// Distance along edges from the nearest source, per vertex. O(E log E).
+std::vector<double> edge_distance(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources);
 
 // Marks (or clears) a path of half-edges in the cut.
 void mark_path(const Topology& topology, const std::vector<uint32_t>& half_edges, uint8_t value, CutEdges& cut);

@@ -68,24 +68,15 @@ bool opens_to_disk(const Mesh& mesh, const Topology& topology, const CutEdges& c
     return counts.first != kNone && counts.loop_length == counts.boundary_half_edges && counts.euler == 1;
 }
 
-Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
-    const CutCounts counts = count_opened(mesh, topology, cut);
-    if (counts.first == kNone) return Error{Stage::kCut, "the cut is empty: a closed surface has to be cut open"};
-    if (counts.loop_length != counts.boundary_half_edges || counts.euler != 1) {
-        return Error{
-            Stage::kCut,
-            "the cut does not open the mesh into a disk (Euler characteristic " + std::to_string(counts.euler) + ", " +
-                (counts.loop_length == counts.boundary_half_edges ? "one boundary loop)" : "several boundary loops)")};
-    }
-
-    OpenedMesh opened;
-    opened.mesh.triangles.assign(mesh.triangles.size(), {kNone, kNone, kNone});
+SplitMesh split_along(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
+    SplitMesh split;
+    split.mesh.triangles.assign(mesh.triangles.size(), {kNone, kNone, kNone});
     const auto add_copy = [&](uint32_t v) {
-        opened.mesh.positions.push_back(mesh.positions[v]);
-        opened.source.push_back(v);
-        return static_cast<uint32_t>(opened.source.size() - 1);
+        split.mesh.positions.push_back(mesh.positions[v]);
+        split.source.push_back(v);
+        return static_cast<uint32_t>(split.source.size() - 1);
     };
-    const auto corner = [&](uint32_t h) -> uint32_t& { return opened.mesh.triangles[face_of(h)][h % 3]; };
+    const auto corner = [&](uint32_t h) -> uint32_t& { return split.mesh.triangles[face_of(h)][h % 3]; };
 
     // Each sector between two cut edges becomes one vertex: start at the half-edge with the cut on its right, walk
     // left.
@@ -105,6 +96,24 @@ Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const C
         if (copy == kNone) copy = add_copy(from(mesh, h));
         corner(h) = copy;
     }
+    return split;
+}
+
+Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
+    const CutCounts counts = count_opened(mesh, topology, cut);
+    if (counts.first == kNone) return Error{Stage::kCut, "the cut is empty: a closed surface has to be cut open"};
+    if (counts.loop_length != counts.boundary_half_edges || counts.euler != 1) {
+        return Error{
+            Stage::kCut,
+            "the cut does not open the mesh into a disk (Euler characteristic " + std::to_string(counts.euler) + ", " +
+                (counts.loop_length == counts.boundary_half_edges ? "one boundary loop)" : "several boundary loops)")};
+    }
+
+    SplitMesh split = split_along(mesh, topology, cut);
+    OpenedMesh opened;
+    opened.mesh = std::move(split.mesh);
+    opened.source = std::move(split.source);
+    const auto corner = [&](uint32_t h) { return opened.mesh.triangles[face_of(h)][h % 3]; };
 
     // A cut-node is where the cut's valence is not 2.
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);

@@ -31,6 +31,14 @@ struct OpenedMesh {
 // Fails unless M' is a disk: Euler characteristic 1, one boundary loop. O(F).
 Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
+// M' of any cut, disk or not: per vertex sector between cut edges one vertex. Faces and corners keep their numbers.
+// O(F).
+struct SplitMesh {
+    Mesh mesh;
+    std::vector<uint32_t> source;  // per vertex: its vertex of the input mesh
+};
+SplitMesh split_along(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
+
 // Whether opening along `cut` gives a disk; the cheap test behind straightening. O(F).
 bool opens_to_disk(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 

@@ -45,6 +45,17 @@ TEST(Cut, StraighteningShortensAndKeepsTheDisk) {
     }
 }
 
+TEST(Cut, ExchangingPathsShortensAndKeepsTheDisk) {
+    for (const NamedMesh& m : connected_meshes()) {
+        if (m.mesh.triangles.size() > 6000) continue;  // made for coarse meshes
+        const Topology topology = build_topology(m.mesh);
+        const CutEdges cut = initial_cut(m.mesh, topology, 0);
+        const CutEdges shorter = shorten_cut(m.mesh, topology, cut);
+        EXPECT_TRUE(opens_to_disk(m.mesh, topology, shorter)) << m.name;
+        EXPECT_LE(cut_length(m.mesh, topology, shorter), cut_length(m.mesh, topology, cut) * (1 + 1e-12)) << m.name;
+    }
+}
+
 TEST(Cut, HalvesOfACutEdgeAreMarkedAlike) {
     for (const NamedMesh& m : connected_meshes()) {
         const Topology topology = build_topology(m.mesh);
