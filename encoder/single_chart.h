@@ -1,0 +1,22 @@
+// One connected surface -> one geometry image: the stages of Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002, in order.
+#pragma once
+
+#include <cstdint>
+
+#include "encoder/geometry_image.h"
+#include "encoder/stage_clock.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct SingleChart {
+    GeometryImage image;
+    double cut_length = 0;           // object units
+    double stretch_efficiency = 0;   // of the parametrization that was sampled
+    uint64_t flipped_triangles = 0;  // in it; 0 by construction, counted all the same
+};
+
+// In: a clean connected mesh. `clock` takes the time of each stage.
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
+
+}  // namespace gim

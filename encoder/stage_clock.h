@@ -1,0 +1,56 @@
+// Times the stages of a run and tells the caller where it is.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "gim/encoder.h"
+
+namespace gim {
+
+class StageClock {
+  public:
+    explicit StageClock(Progress progress) : progress_(std::move(progress)) {}
+
+    // Ends the running stage and begins the next. Time of a stage that comes several times is added up.
+    void begin(Stage stage) {
+        end();
+        running_ = true;
+        stage_ = stage;
+        since_ = Clock::now();
+        report(0);
+    }
+    void end() {
+        if (!running_) return;
+        running_ = false;
+        const double seconds = std::chrono::duration<double>(Clock::now() - since_).count();
+        const std::string name(stage_name(stage_));
+        const auto known =
+            std::find_if(times_.begin(), times_.end(), [&](const StageTime& t) { return t.stage == name; });
+        if (known == times_.end()) {
+            times_.push_back({name, seconds});
+        } else {
+            known->seconds += seconds;
+        }
+    }
+    void report(double fraction) const {
+        if (progress_) progress_(stage_, fraction);
+    }
+    // For stages that report by themselves.
+    Progress progress() const {
+        return [this](Stage, double fraction) { report(fraction); };
+    }
+    const std::vector<StageTime>& times() const { return times_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Progress progress_;
+    std::vector<StageTime> times_;
+    Stage stage_ = Stage::kInput;
+    Clock::time_point since_;
+    bool running_ = false;
+};
+
+}  // namespace gim
