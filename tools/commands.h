@@ -1,0 +1,64 @@
+// The subcommands of the gim program. Each takes its parsed options and returns the exit status (0 or 1): results go to
+// stdout, errors to stderr.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct EncodeCommand {
+    std::string input, output;
+    EncodeOptions options;
+    std::string json;  // empty: none; "-": stdout
+    bool quiet = false;
+};
+int run_encode(const EncodeCommand& command);
+
+struct DecodeCommand {
+    std::string input, output;
+    uint32_t level = 0;
+    bool fused = false;
+};
+int run_decode(const DecodeCommand& command);
+
+struct InfoCommand {
+    std::string input;
+    bool json = false;
+};
+int run_info(const InfoCommand& command);
+
+struct CompareCommand {
+    std::string reference, test;
+    CompareOptions options;
+    uint32_t level = 0;
+    bool json = false;
+};
+int run_compare(const CompareCommand& command);
+
+struct RenderCommand {
+    std::string input, output;
+    std::string gim;  // empty: one picture of the input; else a triptych with this file
+    uint32_t level = 0;
+    uint32_t size = 512;  // pixels per side of a panel
+    std::string up = "auto";
+    double azimuth = 35, elevation = 20;  // degrees
+    bool flat = false;
+    bool wire = false;
+};
+int run_render(const RenderCommand& command);
+
+// Prints "gim: FILE: STAGE: message" on stderr; returns 1.
+int report_error(const std::string& file, const Error& error);
+
+// Prints through printf-like formatting on stdout. Everything that the program says there goes through one of these
+// two.
+std::string with_thousands(uint64_t number);  // 34835 -> "34,835"
+void print_line(const std::string& text);
+
+// The whole command line. 0: done, 1: the work failed, 2: wrong usage.
+int run_gim(int argc, const char* const* argv);
+
+}  // namespace gim

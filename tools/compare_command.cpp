@@ -1,0 +1,60 @@
+// gim compare: distances between two surfaces and what holds of their connectivity.
+#include <cstdio>
+
+#include "tools/commands.h"
+#include "tools/input.h"
+#include "tools/report_json.h"
+
+namespace gim {
+namespace {
+
+void print_topology(const char* which, const std::string& path, const TopologySummary& t) {
+    std::printf("%s %s\n", which, path.c_str());
+    std::printf("  vertices %s, triangles %s, components %llu, boundary loops %llu, ",
+                with_thousands(t.vertices).c_str(), with_thousands(t.triangles).c_str(),
+                static_cast<unsigned long long>(t.components), static_cast<unsigned long long>(t.boundary_loops));
+    if (t.manifold) {
+        std::printf("genus %g, %s\n", t.genus, t.watertight ? "watertight" : "manifold, not closed");
+    } else {
+        std::printf("not a manifold (%llu edges, %llu vertices, %llu edges misoriented)\n",
+                    static_cast<unsigned long long>(t.nonmanifold_edges),
+                    static_cast<unsigned long long>(t.nonmanifold_vertices),
+                    static_cast<unsigned long long>(t.misoriented_edges));
+    }
+}
+
+}  // namespace
+
+int run_compare(const CompareCommand& command) {
+    const Result<TriangleMesh> reference = read_surface(command.reference, 0);
+    if (!reference.ok()) return report_error(command.reference, reference.error());
+    const Result<TriangleMesh> test = read_surface(command.test, command.level);
+    if (!test.ok()) return report_error(command.test, test.error());
+    const Result<Comparison> compared = compare(reference.value(), test.value(), command.options);
+    if (!compared.ok()) return report_error(command.reference + " and " + command.test, compared.error());
+
+    const Comparison& c = compared.value();
+    const TopologySummary reference_topology = summarize_topology(reference.value());
+    const TopologySummary test_topology = summarize_topology(test.value());
+    if (command.json) {
+        const nlohmann::ordered_json document = {
+            {"reference", {{"file", command.reference}, {"topology", to_json(reference_topology)}}},
+            {"test", {{"file", command.test}, {"topology", to_json(test_topology)}}},
+            {"comparison", to_json(c)}};
+        print_line(document.dump(2));
+        return 0;
+    }
+    print_topology("reference", command.reference, reference_topology);
+    print_topology("test     ", command.test, test_topology);
+    std::printf("diagonal of the reference  %.9g\n", c.diagonal);
+    std::printf("RMS reference to test      %.6g\n", c.rms_to_test);
+    std::printf("RMS test to reference      %.6g\n", c.rms_to_reference);
+    std::printf("RMS (larger of the two)    %.6g\n", c.rms);
+    std::printf("max reference to test      %.6g\n", c.max_to_test);
+    std::printf("max test to reference      %.6g\n", c.max_to_reference);
+    std::printf("Hausdorff distance         %.6g\n", c.hausdorff);
+    std::printf("PSNR                       %.3f dB\n", c.psnr);
+    return 0;
+}
+
+}  // namespace gim

@@ -1,0 +1,40 @@
+// What a .gim file gives back, in the shapes that the writers, `compare` and `render` want.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gim/decoder.h"
+#include "gim/encoder.h"
+#include "tools/file.h"
+
+namespace gim {
+
+// One level of one image. `grid` is the image itself; the mesh is the same surface with the cut closed.
+struct DecodedImage {
+    uint32_t side = 0;
+    uint32_t level = 0;
+    std::vector<float> grid;               // side*side*3, row-major
+    std::vector<float> grid_normals;       // side*side*3
+    std::vector<uint32_t> grid_triangles;  // index samples
+    std::vector<float> positions;          // fused vertices, 3 floats each
+    std::vector<float> normals;            // 3 each
+    std::vector<float> texcoords;          // 2 each
+    std::vector<uint32_t> triangles;       // the same triangles in the same order, index fused vertices
+};
+
+// All images of a file at one level; an image that cannot be so coarse gives its coarsest level.
+// Fails with kNoSuchLevel's message where no image has the level.
+Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level);
+
+// All images as one mesh with shared vertices.
+TriangleMesh to_mesh(const std::vector<DecodedImage>& images);
+
+// Words for a status of the decoder, with advice.
+std::string describe_status(gim_status status);
+
+// Whether the bytes begin like a .gim file of ours.
+bool is_gim(const Bytes& file);
+
+}  // namespace gim

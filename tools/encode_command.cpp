@@ -1,0 +1,105 @@
+// gim encode: reads a mesh (or a headerless geometry image), runs the encoder, writes the file and the figures.
+#include <cstdio>
+
+#include "tools/commands.h"
+#include "tools/file.h"
+#include "tools/input.h"
+#include "tools/progress.h"
+#include "tools/report_json.h"
+
+namespace gim {
+namespace {
+
+Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress) {
+    switch (input.kind) {
+        case Input::Kind::kGim:
+            return Error{Stage::kInput,
+                         "is a .gim file already; decode it first (gim decode IN.gim OUT.ply), then encode the mesh"};
+        case Input::Kind::kRawImage:
+            return encode_image(input.raw.planes, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
+                                progress);
+        case Input::Kind::kMesh:
+            break;
+    }
+    return encode(input.mesh, options, progress);
+}
+
+std::string format_line(const char* label, const std::string& value) {
+    std::string line = label;
+    line.resize(26, ' ');
+    return line + value;
+}
+
+std::string fixed(double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof(text), "%.*f", digits, value);
+    return text;
+}
+
+std::string scientific(double value) {
+    char text[64];
+    std::snprintf(text, sizeof(text), "%.4g", value);
+    return text;
+}
+
+void print_report(const EncodeCommand& command, const EncodeReport& report) {
+    print_line(format_line("file", command.output));
+    print_line(format_line("input vertices", with_thousands(report.input_vertices)));
+    print_line(format_line("input triangles", with_thousands(report.input_triangles)));
+    const std::string side = std::to_string(report.side);
+    print_line(format_line("image", side + " x " + side));
+    print_line(format_line("bytes", with_thousands(report.file_bytes)));
+    print_line(format_line("bits per vertex", fixed(report.bits_per_vertex, 3)));
+    print_line(format_line("bits per sample", fixed(report.bits_per_sample, 3)));
+    print_line(format_line("PSNR", fixed(report.error.psnr, 2) + " dB"));
+    print_line(format_line("RMS input to decoded", scientific(report.error.rms_to_test)));
+    print_line(format_line("RMS decoded to input", scientific(report.error.rms_to_reference)));
+    for (const StageTime& time : report.times) {
+        print_line(format_line(("  " + time.stage).c_str(), fixed(time.seconds, 2) + " s"));
+    }
+    print_line(format_line("all stages", fixed(report.seconds, 2) + " s"));
+}
+
+Result<bool> write_json(const std::string& path, const std::string& text) {
+    if (path == "-") {
+        print_line(text);
+        return true;
+    }
+    const std::string line = text + "\n";
+    return write_file(path, {reinterpret_cast<const uint8_t*>(line.data()), line.size()});
+}
+
+}  // namespace
+
+int run_encode(const EncodeCommand& command) {
+    // Minutes of work should not end at a folder that does not exist.
+    for (const std::string& path : {command.output, command.json}) {
+        if (path.empty() || path == "-") continue;
+        const Result<bool> writable = check_writable(path);
+        if (!writable.ok()) return report_error(path, writable.error());
+    }
+
+    Result<Input> input = read_input(command.input);
+    if (!input.ok()) return report_error(command.input, input.error());
+
+    Result<Encoded> encoded = [&] {
+        ProgressPrinter printer(command.quiet);
+        return encode_input(input.value(), command.options, printer.callback());
+    }();
+    if (!encoded.ok()) return report_error(command.input, encoded.error());
+
+    const Result<bool> written = write_file(command.output, encoded.value().bytes);
+    if (!written.ok()) return report_error(command.output, written.error());
+
+    const EncodeReport& report = encoded.value().report;
+    if (!command.json.empty()) {
+        nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
+        document.update(to_json(report));
+        const Result<bool> reported = write_json(command.json, document.dump(2));
+        if (!reported.ok()) return report_error(command.json, reported.error());
+    }
+    if (!command.quiet && command.json != "-") print_report(command, report);
+    return 0;
+}
+
+}  // namespace gim

@@ -1,0 +1,197 @@
+// gim info: what a .gim file holds, and whether its bytes are whole.
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tools/commands.h"
+#include "tools/decoded.h"
+#include "tools/file.h"
+
+namespace gim {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Level {
+    uint32_t level = 0;
+    gim_level_info shape = {};
+};
+
+struct Image {
+    std::vector<Level> levels;
+    uint32_t paths = 0;
+    uint32_t seam_points = 0;  // surface points on the ring of level 0, mates counted once
+};
+
+struct Description {
+    gim_info info = {};
+    uint64_t actual_size = 0;
+    std::vector<Image> images;
+    std::vector<gim_chunk> chunks;
+    std::vector<std::string> problems;  // empty: everything is in order
+};
+
+const char* layout_name(uint32_t layout) {
+    switch (layout) {
+        case GIM_LAYOUT_GIM:
+            return "gim";
+        case GIM_LAYOUT_MCGIM:
+            return "mcgim";
+        case GIM_LAYOUT_TILES:
+            return "tiles";
+        default:
+            return "unknown";
+    }
+}
+
+const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS ? "lossless" : "lossy"; }
+
+void add_image(const Bytes& file, uint32_t index, Description& d) {
+    const std::string name = "image " + std::to_string(index);
+    Image image;
+    gim_level_info shape;
+    gim_status status = GIM_OK;
+    for (uint32_t level = 0; level < d.info.level_count; ++level) {
+        status = gim_read_level_info(&d.info, file.data(), file.size(), index, level, &shape);
+        if (status != GIM_OK) break;
+        image.levels.push_back({level, shape});
+    }
+    if (status != GIM_OK && status != GIM_NO_SUCH_LEVEL) d.problems.push_back(name + ": " + describe_status(status));
+    if (!image.levels.empty()) {
+        const gim_level_info& full = image.levels[0].shape;
+        std::vector<uint32_t> class_of(size_t{4} * (full.side - 1));
+        status = gim_read_seams(&d.info, file.data(), file.size(), index, 0, class_of.data(), &image.paths);
+        if (status != GIM_OK) d.problems.push_back(name + ", seams: " + describe_status(status));
+        image.seam_points = static_cast<uint32_t>(std::set<uint32_t>(class_of.begin(), class_of.end()).size());
+    }
+    d.images.push_back(std::move(image));
+}
+
+Result<Description> describe(const Bytes& file) {
+    Description d;
+    const gim_status status = gim_read_info(file.data(), file.size(), nullptr, &d.info);
+    if (status != GIM_OK) return Error{Stage::kInput, describe_status(status)};
+    d.actual_size = file.size();
+    for (uint32_t i = 0; i < d.info.image_count; ++i) add_image(file, i, d);
+
+    uint32_t damaged = 0;
+    gim_chunk chunk;
+    for (uint32_t i = 0; gim_read_chunk(&d.info, file.data(), file.size(), i, &chunk) == GIM_OK; ++i) {
+        damaged += chunk.intact == 0 ? 1 : 0;
+        d.chunks.push_back(chunk);
+    }
+    if (damaged > 0) {
+        d.problems.push_back(std::to_string(damaged) + " of " + std::to_string(d.chunks.size()) +
+                             " chunks are damaged or missing");
+    }
+    if (d.actual_size != d.info.file_size) {
+        d.problems.push_back("the index tells of " + std::to_string(d.info.file_size) + " bytes, the file has " +
+                             std::to_string(d.actual_size));
+    }
+    if (d.problems.empty()) {
+        const Result<std::vector<DecodedImage>> decoded = decode_images(file, 0);
+        if (!decoded.ok()) d.problems.push_back("decoding fails: " + decoded.error().message);
+    }
+    return d;
+}
+
+double bits_per_sample(const gim_info& info) {
+    return info.sample_count == 0 ? 0
+                                  : 8.0 * static_cast<double>(info.file_size) / static_cast<double>(info.sample_count);
+}
+
+void print_json(const std::string& path, const Description& d) {
+    ordered_json images = ordered_json::array();
+    for (const Image& image : d.images) {
+        ordered_json levels = ordered_json::array();
+        for (const Level& level : image.levels) {
+            levels.push_back({{"level", level.level},
+                              {"side", level.shape.side},
+                              {"vertices", level.shape.vertex_count},
+                              {"triangles", level.shape.triangle_count},
+                              {"prefix_bytes", level.shape.prefix_size},
+                              {"scratch_bytes", level.shape.scratch_size}});
+        }
+        images.push_back({{"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}});
+    }
+    ordered_json chunks = ordered_json::array();
+    for (const gim_chunk& chunk : d.chunks) {
+        ordered_json entry = {{"name", chunk.name},
+                              {"offset", chunk.offset},
+                              {"bytes", chunk.size},
+                              {"raw_bytes", chunk.raw_size},
+                              {"intact", chunk.intact != 0}};
+        if (chunk.level >= 0) entry["level"] = chunk.level;
+        chunks.push_back(entry);
+    }
+    const ordered_json document = {{"file", path},
+                                   {"version", d.info.version},
+                                   {"layout", layout_name(d.info.layout)},
+                                   {"coding", coding_name(d.info.coding)},
+                                   {"bits", d.info.bits},
+                                   {"step", d.info.step},
+                                   {"quantizer", d.info.quantizer},
+                                   {"origin", {d.info.origin[0], d.info.origin[1], d.info.origin[2]}},
+                                   {"bytes", d.actual_size},
+                                   {"index_bytes", d.info.index_size},
+                                   {"samples", d.info.sample_count},
+                                   {"bits_per_sample", bits_per_sample(d.info)},
+                                   {"level_count", d.info.level_count},
+                                   {"images", images},
+                                   {"chunks", chunks},
+                                   {"problems", d.problems},
+                                   {"intact", d.problems.empty()}};
+    print_line(document.dump(2));
+}
+
+void print_text(const std::string& path, const Description& d) {
+    const gim_info& info = d.info;
+    std::printf("%s\n", path.c_str());
+    std::printf("  layout %s, %s, %u bits per coordinate, step %.6g, format version %u\n", layout_name(info.layout),
+                coding_name(info.coding), info.bits, static_cast<double>(info.step), info.version);
+    std::printf("  %s bytes, %u image%s, %s samples, %.3f bits per sample\n", with_thousands(d.actual_size).c_str(),
+                info.image_count, info.image_count == 1 ? "" : "s", with_thousands(info.sample_count).c_str(),
+                bits_per_sample(info));
+    for (size_t i = 0; i < d.images.size(); ++i) {
+        const Image& image = d.images[i];
+        std::printf("image %zu: %u cut paths, %u surface points on the ring\n", i, image.paths, image.seam_points);
+        std::printf("  level   side   vertices  triangles   bytes needed\n");
+        for (const Level& level : image.levels) {
+            std::printf("  %5u  %5u  %9u  %9u  %13llu\n", level.level, level.shape.side, level.shape.vertex_count,
+                        level.shape.triangle_count, static_cast<unsigned long long>(level.shape.prefix_size));
+        }
+    }
+    std::printf("chunks\n");
+    for (const gim_chunk& chunk : d.chunks) {
+        std::printf("  %-8s", chunk.name);
+        if (chunk.level >= 0) {
+            std::printf("  level %2d", chunk.level);
+        } else {
+            std::printf("          ");
+        }
+        std::printf("  offset %10llu  bytes %9llu  %s\n", static_cast<unsigned long long>(chunk.offset),
+                    static_cast<unsigned long long>(chunk.size), chunk.intact != 0 ? "intact" : "DAMAGED OR MISSING");
+    }
+    std::printf("checks: %s\n",
+                d.problems.empty() ? "all chunks intact, decodes at full resolution" : "FAILED, see stderr");
+}
+
+}  // namespace
+
+int run_info(const InfoCommand& command) {
+    const Result<Bytes> file = read_file(command.input);
+    if (!file.ok()) return report_error(command.input, file.error());
+    const Result<Description> described = describe(file.value());
+    if (!described.ok()) return report_error(command.input, described.error());
+    const Description& description = described.value();
+    command.json ? print_json(command.input, description) : print_text(command.input, description);
+
+    int exit_status = 0;
+    for (const std::string& problem : description.problems) {
+        exit_status = report_error(command.input, {Stage::kInput, problem});
+    }
+    return exit_status;
+}
+
+}  // namespace gim

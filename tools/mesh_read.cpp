@@ -1,0 +1,160 @@
+#include "tools/mesh_read.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "tools/little_endian.h"
+#include "tools/text_scanner.h"
+
+namespace gim {
+namespace {
+
+constexpr size_t kSniffed = size_t{1} << 16;
+
+bool has_obj_line(std::string_view text) {
+    TextScanner in(text.substr(0, kSniffed));
+    while (!in.at_end()) {
+        const std::string_view keyword = in.word_on_line();
+        if (keyword == "v" && parse_real(in.word_on_line()) && parse_real(in.word_on_line()) &&
+            parse_real(in.word_on_line())) {
+            return true;
+        }
+        in.next_line();
+    }
+    return false;
+}
+
+bool has_stl_facet(std::string_view text) {
+    TextScanner in(text.substr(0, kSniffed));
+    if (in.word_on_line() != "solid") return false;
+    in.next_line();
+    const std::string_view word = in.word();
+    return word == "facet" || word == "endsolid";
+}
+
+MeshFormat by_content(std::string_view text) {
+    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return MeshFormat::kPly;
+    if (text.starts_with("glTF")) return MeshFormat::kGltf;
+    TextScanner in(text.substr(0, kSniffed));
+    const std::string_view word = in.word();
+    if (word == "OFF" || word == "COFF" || word == "NOFF" || word == "CNOFF" || word == "STOFF")
+        return MeshFormat::kOff;
+    if (has_stl_facet(text)) return MeshFormat::kStl;
+    if (word.starts_with('{') && text.substr(0, kSniffed).find("\"asset\"") != std::string_view::npos) {
+        return MeshFormat::kGltf;
+    }
+    if (text.size() >= 84 && text.size() == 84 + 50 * uint64_t{load_u32(text.data() + 80)}) return MeshFormat::kStl;
+    if (has_obj_line(text)) return MeshFormat::kObj;
+    return MeshFormat::kUnknown;
+}
+
+MeshFormat by_extension(std::string_view extension) {
+    if (extension == "ply") return MeshFormat::kPly;
+    if (extension == "obj") return MeshFormat::kObj;
+    if (extension == "off") return MeshFormat::kOff;
+    if (extension == "stl") return MeshFormat::kStl;
+    if (extension == "glb" || extension == "gltf") return MeshFormat::kGltf;
+    return MeshFormat::kUnknown;
+}
+
+std::string_view as_text(std::span<const uint8_t> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std::string& folder) {
+    switch (format) {
+        case MeshFormat::kPly:
+            return read_ply(text);
+        case MeshFormat::kObj:
+            return read_obj(text);
+        case MeshFormat::kOff:
+            return read_off(text);
+        case MeshFormat::kStl:
+            return read_stl(text);
+        case MeshFormat::kGltf:
+            return read_gltf(text, folder);
+        case MeshFormat::kUnknown:
+            break;
+    }
+    return Error{Stage::kInput, "neither its name nor its content is PLY, OBJ, OFF, STL, glTF or GLB"};
+}
+
+}  // namespace
+
+MeshFormat detect_format(std::span<const uint8_t> bytes, std::string_view extension) {
+    const MeshFormat content = by_content(as_text(bytes));
+    return content != MeshFormat::kUnknown ? content : by_extension(extension);
+}
+
+std::string_view format_name(MeshFormat format) {
+    switch (format) {
+        case MeshFormat::kPly:
+            return "PLY";
+        case MeshFormat::kObj:
+            return "OBJ";
+        case MeshFormat::kOff:
+            return "OFF";
+        case MeshFormat::kStl:
+            return "STL";
+        case MeshFormat::kGltf:
+            return "glTF";
+        case MeshFormat::kUnknown:
+            break;
+    }
+    return "unknown";
+}
+
+bool repeats_vertices(MeshFormat format) { return format == MeshFormat::kStl || format == MeshFormat::kGltf; }
+
+Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+    const std::string beginning = "not a mesh that gim can read: ";
+    if (bytes.empty()) return Error{Stage::kInput, beginning + "the file is empty"};
+    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, folder);
+    if (!mesh.ok()) {
+        const std::string as = format == MeshFormat::kUnknown ? "" : "(as " + std::string(format_name(format)) + ") ";
+        return Error{mesh.error().stage, beginning + as + mesh.error().message};
+    }
+    return mesh;
+}
+
+TriangleMesh weld_equal_positions(const TriangleMesh& mesh) {
+    // Sorted by position (as bits, so that not-a-number has a place too), ties by index: the first of equal ones leads.
+    std::vector<uint32_t> order(mesh.positions.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto bits = [&](uint32_t v) {
+        std::array<uint64_t, 3> key = {};
+        for (size_t k = 0; k < 3; ++k) {
+            const double value = mesh.positions[v][k] + 0.0;  // -0 and 0 are one place
+            std::memcpy(&key[k], &value, sizeof(value));
+        }
+        return key;
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        const auto ka = bits(a);
+        const auto kb = bits(b);
+        return ka != kb ? ka < kb : a < b;
+    });
+    std::vector<uint32_t> leader(order.size());
+    for (size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && bits(order[i]) == bits(order[i - 1]);
+        leader[order[i]] = same ? leader[order[i - 1]] : order[i];
+    }
+
+    TriangleMesh welded;
+    std::vector<uint32_t> renamed(order.size());
+    for (uint32_t v = 0; v < leader.size(); ++v) {
+        if (leader[v] == v) {
+            renamed[v] = static_cast<uint32_t>(welded.positions.size());
+            welded.positions.push_back(mesh.positions[v]);
+        } else {
+            renamed[v] = renamed[leader[v]];
+        }
+    }
+    welded.triangles.reserve(mesh.triangles.size());
+    for (const auto& t : mesh.triangles) {
+        welded.triangles.push_back({renamed[leader[t[0]]], renamed[leader[t[1]]], renamed[leader[t[2]]]});
+    }
+    return welded;
+}
+
+}  // namespace gim

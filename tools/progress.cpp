@@ -1,0 +1,50 @@
+#include "tools/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+namespace gim {
+namespace {
+
+constexpr std::chrono::milliseconds kPause(100);  // between two prints of one stage
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+}  // namespace
+
+ProgressPrinter::ProgressPrinter(bool quiet) : visible_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+ProgressPrinter::~ProgressPrinter() { finish_stage(); }
+
+void ProgressPrinter::finish_stage() {
+    if (visible_ && stage_) {
+        const std::string name(stage_name(*stage_));
+        std::fprintf(stderr, "\r  %-14s %7.2f s   \n", name.c_str(), seconds(Clock::now() - begin_));
+    }
+    stage_.reset();
+}
+
+void ProgressPrinter::update(Stage stage, double fraction) {
+    if (!visible_) return;
+    const Clock::time_point now = Clock::now();
+    if (stage_ != stage) {
+        finish_stage();
+        stage_ = stage;
+        begin_ = now;
+    } else if (now - printed_ < kPause) {
+        return;
+    }
+    printed_ = now;
+    const std::string name(stage_name(stage));
+    std::fprintf(stderr, "\r  %-14s %5.0f %%   ", name.c_str(), 100 * fraction);
+    std::fflush(stderr);
+}
+
+Progress ProgressPrinter::callback() {
+    if (!visible_) return {};
+    return [this](Stage stage, double fraction) { update(stage, fraction); };
+}
+
+}  // namespace gim

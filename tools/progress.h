@@ -1,0 +1,32 @@
+// One line on stderr per stage, while it runs and when it is done. Silent unless stderr is a terminal.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "gim/encoder.h"
+
+namespace gim {
+
+class ProgressPrinter {
+  public:
+    explicit ProgressPrinter(bool quiet);
+    ~ProgressPrinter();
+    ProgressPrinter(const ProgressPrinter&) = delete;
+    ProgressPrinter& operator=(const ProgressPrinter&) = delete;
+
+    void update(Stage stage, double fraction);
+    // What the encoder wants; empty where nothing is to be printed. Must not outlive the printer.
+    Progress callback();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    void finish_stage();
+
+    bool visible_;
+    std::optional<Stage> stage_;
+    Clock::time_point begin_;
+    Clock::time_point printed_;
+};
+
+}  // namespace gim

@@ -1,0 +1,293 @@
+// PLY: ascii, binary_little_endian, binary_big_endian; any property types; unknown elements and properties are skipped.
+// Of the faces it takes vertex_indices (or vertex_index), or the strips of a tristrips element.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "tools/little_endian.h"
+#include "tools/mesh_read.h"
+#include "tools/polygons.h"
+#include "tools/text_scanner.h"
+
+namespace gim {
+namespace {
+
+enum class Encoding { kAscii, kLittleEndian, kBigEndian };
+enum class Scalar { kNone, kI8, kU8, kI16, kU16, kI32, kU32, kF32, kF64 };
+
+struct Property {
+    std::string_view name;
+    Scalar type = Scalar::kNone;
+    Scalar count_type = Scalar::kNone;  // kNone: a single value, else a list
+};
+
+struct Element {
+    std::string_view name;
+    uint64_t count = 0;
+    std::vector<Property> properties;
+};
+
+struct Header {
+    Encoding encoding = Encoding::kAscii;
+    std::vector<Element> elements;
+    size_t size = 0;  // bytes, "end_header" line included
+};
+
+Scalar scalar_named(std::string_view name) {
+    struct Entry {
+        std::string_view name, alias;
+        Scalar type;
+    };
+    static constexpr std::array<Entry, 8> kScalars = {{{"char", "int8", Scalar::kI8},
+                                                       {"uchar", "uint8", Scalar::kU8},
+                                                       {"short", "int16", Scalar::kI16},
+                                                       {"ushort", "uint16", Scalar::kU16},
+                                                       {"int", "int32", Scalar::kI32},
+                                                       {"uint", "uint32", Scalar::kU32},
+                                                       {"float", "float32", Scalar::kF32},
+                                                       {"double", "float64", Scalar::kF64}}};
+    for (const Entry& entry : kScalars) {
+        if (name == entry.name || name == entry.alias) return entry.type;
+    }
+    return Scalar::kNone;
+}
+
+size_t size_of(Scalar type) {
+    switch (type) {
+        case Scalar::kNone:
+            return 0;
+        case Scalar::kI8:
+        case Scalar::kU8:
+            return 1;
+        case Scalar::kI16:
+        case Scalar::kU16:
+            return 2;
+        case Scalar::kI32:
+        case Scalar::kU32:
+        case Scalar::kF32:
+            return 4;
+        case Scalar::kF64:
+            return 8;
+    }
+    return 0;
+}
+
+Error bad_header(size_t line, const std::string& what) {
+    return {Stage::kInput, "PLY header, line " + std::to_string(line) + ": " + what};
+}
+
+Result<Header> read_header(std::string_view text) {
+    Header header;
+    TextScanner in(text);
+    if (in.word_on_line() != "ply") return Error{Stage::kInput, "it does not begin with 'ply'"};
+    bool has_format = false;
+    while (in.next_line()) {
+        const size_t line = in.line();
+        const std::string_view keyword = in.word_on_line();
+        if (keyword == "format") {
+            const std::string_view name = in.word_on_line();
+            if (name == "ascii") {
+                header.encoding = Encoding::kAscii;
+            } else if (name == "binary_little_endian") {
+                header.encoding = Encoding::kLittleEndian;
+            } else if (name == "binary_big_endian") {
+                header.encoding = Encoding::kBigEndian;
+            } else {
+                return bad_header(line, "unknown format '" + std::string(name.substr(0, 40)) + "'");
+            }
+            has_format = true;
+        } else if (keyword == "element") {
+            Element element;
+            element.name = in.word_on_line();
+            const std::optional<int64_t> count = parse_integer(in.word_on_line());
+            if (!count || *count < 0) return bad_header(line, "an element needs a name and a number");
+            element.count = static_cast<uint64_t>(*count);
+            header.elements.push_back(element);
+        } else if (keyword == "property") {
+            if (header.elements.empty()) return bad_header(line, "a property before the first element");
+            Property property;
+            std::string_view type = in.word_on_line();
+            if (type == "list") {
+                property.count_type = scalar_named(in.word_on_line());
+                if (property.count_type == Scalar::kNone) return bad_header(line, "unknown type of a list's length");
+                type = in.word_on_line();
+            }
+            property.type = scalar_named(type);
+            if (property.type == Scalar::kNone) {
+                return bad_header(line, "unknown type '" + std::string(type.substr(0, 40)) + "'");
+            }
+            property.name = in.word_on_line();
+            header.elements.back().properties.push_back(property);
+        } else if (keyword == "end_header") {
+            in.next_line();
+            header.size = in.offset();
+            if (!has_format) return bad_header(line, "the format line is missing");
+            return header;
+        } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+            return bad_header(line, "unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
+        }
+    }
+    return Error{Stage::kInput, "its PLY header has no end (is the file cut short?)"};
+}
+
+// The values of the body one by one. Reading past the end sets `failed`.
+class Body {
+  public:
+    Body(std::string_view text, Encoding encoding) : text_(text), scanner_(text), encoding_(encoding) {}
+
+    double next(Scalar type) {
+        if (encoding_ == Encoding::kAscii) {
+            const std::optional<double> value = parse_real(scanner_.word());
+            if (!value) failed = true;
+            return value.value_or(0);
+        }
+        const size_t size = size_of(type);
+        if (size > text_.size() - position_) {
+            failed = true;
+            return 0;
+        }
+        std::array<char, 8> bytes = {};
+        std::copy_n(text_.data() + position_, size, bytes.begin());
+        if (encoding_ == Encoding::kBigEndian) {
+            std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+        }
+        position_ += size;
+        switch (type) {
+            case Scalar::kNone:
+                break;
+            case Scalar::kI8:
+                return load<int8_t>(bytes.data());
+            case Scalar::kU8:
+                return load<uint8_t>(bytes.data());
+            case Scalar::kI16:
+                return load<int16_t>(bytes.data());
+            case Scalar::kU16:
+                return load<uint16_t>(bytes.data());
+            case Scalar::kI32:
+                return load<int32_t>(bytes.data());
+            case Scalar::kU32:
+                return load<uint32_t>(bytes.data());
+            case Scalar::kF32:
+                return static_cast<double>(load<float>(bytes.data()));
+            case Scalar::kF64:
+                return load<double>(bytes.data());
+        }
+        return 0;
+    }
+
+    // Length of a list. Lengths that the rest of the file cannot hold fail here, before anything is stored.
+    size_t next_length(const Property& list) {
+        const double length = next(list.count_type);
+        const size_t left = encoding_ == Encoding::kAscii ? text_.size() - scanner_.offset() : text_.size() - position_;
+        const size_t least = encoding_ == Encoding::kAscii ? 1 : size_of(list.type);
+        if (!(length >= 0) || length > static_cast<double>(left / least)) failed = true;
+        return failed ? 0 : static_cast<size_t>(length);
+    }
+
+    bool failed = false;
+
+  private:
+    std::string_view text_;
+    TextScanner scanner_;
+    Encoding encoding_;
+    size_t position_ = 0;
+};
+
+// Least number of bytes of one record, with empty lists.
+size_t least_size(const Element& element, Encoding encoding) {
+    size_t size = 0;
+    for (const Property& property : element.properties) {
+        const Scalar first = property.count_type == Scalar::kNone ? property.type : property.count_type;
+        size += encoding == Encoding::kAscii ? 2 : size_of(first);
+    }
+    return size;
+}
+
+int64_t as_index(double value) {
+    // NaN, fractions and numbers beyond any index become -1, which no vertex has.
+    return value >= 0 && value < 9e15 && value == std::floor(value) ? static_cast<int64_t>(value) : -1;
+}
+
+// A strip (-1 begins the next one) as triangles, every second one turned round.
+void add_strips(const std::vector<int64_t>& strip, PolygonSoup& soup) {
+    size_t begin = 0;
+    for (size_t i = 0; i < strip.size(); ++i) {
+        if (strip[i] < 0) {
+            begin = i + 1;
+        } else if (i >= begin + 2) {
+            const bool turned = (i - begin) % 2 != 0;
+            const std::array<int64_t, 3> face = {strip[turned ? i - 1 : i - 2], strip[turned ? i - 2 : i - 1],
+                                                 strip[i]};
+            soup.add_face(face);
+        }
+    }
+}
+
+}  // namespace
+
+Result<TriangleMesh> read_ply(std::string_view text) {
+    const Result<Header> parsed = read_header(text);
+    if (!parsed.ok()) return parsed.error();
+    const Header& header = parsed.value();
+
+    const std::string_view rest = text.substr(header.size);
+    Body body(rest, header.encoding);
+    PolygonSoup soup;
+    std::vector<int64_t> list;
+    bool has_coordinates = false;
+    for (const Element& element : header.elements) {
+        const size_t least = least_size(element, header.encoding);
+        if (least == 0) continue;
+        if (element.count > (rest.size() + 1) / least) {
+            return Error{Stage::kInput, "its header claims " + std::to_string(element.count) + " of '" +
+                                            std::string(element.name.substr(0, 40)) + "', but the file holds only " +
+                                            std::to_string(text.size()) + " bytes (is it cut short?)"};
+        }
+        const bool is_vertex = element.name == "vertex";
+        const bool is_face = element.name == "face";
+        const bool is_strip = element.name == "tristrips";
+        std::vector<int> axis_of(element.properties.size(), -1);
+        for (size_t p = 0; is_vertex && p < axis_of.size(); ++p) {
+            const std::string_view name = element.properties[p].name;
+            if (name == "x" || name == "y" || name == "z") axis_of[p] = name[0] - 'x';
+        }
+        if (is_vertex) {
+            soup.positions.reserve(element.count);
+            has_coordinates = std::count_if(axis_of.begin(), axis_of.end(), [](int a) { return a >= 0; }) == 3;
+        }
+        for (uint64_t record = 0; record < element.count; ++record) {
+            std::array<double, 3> position = {};
+            for (size_t p = 0; p < element.properties.size(); ++p) {
+                const Property& property = element.properties[p];
+                if (property.count_type == Scalar::kNone) {
+                    const double value = body.next(property.type);
+                    if (axis_of[p] >= 0) position[static_cast<size_t>(axis_of[p])] = value;
+                    continue;
+                }
+                const size_t length = body.next_length(property);
+                const bool wanted =
+                    (is_face || is_strip) && (property.name == "vertex_indices" || property.name == "vertex_index");
+                list.clear();
+                for (size_t i = 0; i < length; ++i) {
+                    const double value = body.next(property.type);
+                    if (wanted) list.push_back(as_index(value));
+                }
+                if (body.failed) break;
+                if (wanted && is_face) soup.add_face(list);
+                if (wanted && is_strip) add_strips(list, soup);
+            }
+            if (body.failed) {
+                return Error{Stage::kInput, "it ends, or has something that is no number, inside '" +
+                                                std::string(element.name.substr(0, 40)) + "' " +
+                                                std::to_string(record) + " of " + std::to_string(element.count) +
+                                                " (is the file cut short?)"};
+            }
+            if (is_vertex) soup.positions.push_back(position);
+        }
+    }
+    if (!has_coordinates) return Error{Stage::kInput, "its header names no vertices with x, y and z"};
+    return triangulate(std::move(soup));
+}
+
+}  // namespace gim

@@ -1,0 +1,337 @@
+#include "tools/render.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tools/stb.h"
+
+namespace gim {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr uint32_t kSupersampling = 3;
+constexpr double kDistance = 4.5;  // of the eye from the centre, in radii of the model: a long lens
+constexpr double kFilled = 0.92;   // of the picture's side that the model fills
+constexpr uint32_t kCaptionHeight = 40;
+const Vector3d kFront(0.80, 0.76, 0.70);
+const Vector3d kBack(0.80, 0.35, 0.28);
+const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
+const Vector3d kBackgroundBottom(0.86, 0.875, 0.90);
+const Vector3d kWire(0.10, 0.14, 0.22);
+
+Vector3d at(const TriangleMesh& mesh, uint32_t v) {
+    return {mesh.positions[v][0], mesh.positions[v][1], mesh.positions[v][2]};
+}
+
+bool is_finite(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
+    return at(mesh, t[0]).allFinite() && at(mesh, t[1]).allFinite() && at(mesh, t[2]).allFinite();
+}
+
+struct Bounds {
+    Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+    Vector3d high = -low;
+};
+
+Bounds bounds_of(const TriangleMesh& mesh) {
+    Bounds bounds;
+    for (const auto& t : mesh.triangles) {
+        if (!is_finite(mesh, t)) continue;
+        for (const uint32_t v : t) {
+            bounds.low = bounds.low.cwiseMin(at(mesh, v));
+            bounds.high = bounds.high.cwiseMax(at(mesh, v));
+        }
+    }
+    return bounds;
+}
+
+// Rows: right, up, towards the eye.
+Matrix3d camera_axes(const View& view, const Vector3d& extent) {
+    UpAxis up = view.up;
+    if (up == UpAxis::kAuto) up = extent.z() < 0.4 * std::min(extent.x(), extent.y()) ? UpAxis::kZ : UpAxis::kY;
+    // The model's axes in the order right, up, front.
+    Matrix3d turn = Matrix3d::Identity();
+    if (up == UpAxis::kZ) turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    if (up == UpAxis::kX) turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    const double a = view.azimuth * std::numbers::pi / 180;
+    const double e = view.elevation * std::numbers::pi / 180;
+    Matrix3d about_up;
+    about_up << std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a);
+    Matrix3d about_right;
+    about_right << 1, 0, 0, 0, std::cos(e), -std::sin(e), 0, std::sin(e), std::cos(e);
+    return about_right * about_up * turn;
+}
+
+// Area-weighted vertex normals in camera axes.
+std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const std::vector<Vector3d>& seen) {
+    std::vector<Vector3d> normals(seen.size(), Vector3d::Zero());
+    for (const auto& t : mesh.triangles) {
+        const Vector3d area = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
+        if (!area.allFinite()) continue;
+        for (const uint32_t v : t) normals[v] += area;
+    }
+    return normals;
+}
+
+// Linear light of a surface point whose normal is in camera axes.
+Vector3d shade(Vector3d normal) {
+    const double length = normal.norm();
+    normal = length > 0 ? Vector3d(normal / length) : Vector3d::UnitZ();
+    const bool front = normal.z() >= 0;
+    if (!front) normal = -normal;
+    const Vector3d albedo = (front ? kFront : kBack).array().pow(2.2);
+
+    static const Vector3d key = Vector3d(-0.45, 0.65, 0.62).normalized();
+    static const Vector3d fill = Vector3d(0.75, 0.05, 0.55).normalized();
+    const double wrapped = std::max(0.0, (normal.dot(key) + 0.15) / 1.15);
+    const double sky = 0.5 + 0.5 * normal.y();
+    const double diffuse = 0.95 * wrapped + 0.22 * std::max(0.0, normal.dot(fill)) + 0.10 + 0.14 * sky;
+    const Vector3d half = (key + Vector3d::UnitZ()).normalized();
+    const double gloss = 0.10 * std::pow(std::max(0.0, normal.dot(half)), 24);
+    return albedo * diffuse + Vector3d::Constant(gloss);
+}
+
+uint8_t to_byte(double linear) {
+    return static_cast<uint8_t>(std::lround(255 * std::pow(std::clamp(linear, 0.0, 1.0), 1 / 2.2)));
+}
+
+// Samples of the picture, kSupersampling times finer on each axis.
+struct Canvas {
+    explicit Canvas(uint32_t pixels)
+        : side(pixels * kSupersampling),
+          depth(size_t{side} * side, -std::numeric_limits<float>::infinity()),
+          colour(size_t{side} * side) {
+        for (uint32_t row = 0; row < side; ++row) {
+            const double s = static_cast<double>(row) / side;
+            const Vector3d background = (1 - s) * kBackgroundTop + s * kBackgroundBottom;
+            const Vector3d linear = background.array().pow(2.2);
+            std::fill_n(colour.begin() + static_cast<std::ptrdiff_t>(size_t{row} * side), side, linear.cast<float>());
+        }
+    }
+
+    uint32_t side;
+    std::vector<float> depth;  // larger is nearer
+    std::vector<Eigen::Vector3f> colour;
+};
+
+struct Corner {
+    Vector2d pixel;
+    double nearness = 0;
+    Vector3d normal;
+};
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+void draw_triangle(const std::array<Corner, 3>& corners, bool wire, Canvas& canvas) {
+    const Vector2d& a = corners[0].pixel;
+    const Vector2d& b = corners[1].pixel;
+    const Vector2d& c = corners[2].pixel;
+    const double doubled_area = cross(b - a, c - a);
+    if (doubled_area == 0) return;
+    const double last = canvas.side - 1.0;
+    const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMax(0.0);
+    const Vector2d high = a.cwiseMax(b).cwiseMax(c).cwiseMin(last);
+    if (low.x() > high.x() || low.y() > high.y()) return;
+    // Distance in samples from the edge opposite of a corner = its weight times this.
+    const std::array<double, 3> height = {std::abs(doubled_area) / (c - b).norm(),
+                                          std::abs(doubled_area) / (a - c).norm(),
+                                          std::abs(doubled_area) / (b - a).norm()};
+    for (auto y = static_cast<uint32_t>(std::floor(low.y())); y <= static_cast<uint32_t>(high.y()); ++y) {
+        for (auto x = static_cast<uint32_t>(std::floor(low.x())); x <= static_cast<uint32_t>(high.x()); ++x) {
+            const Vector2d p(x, y);
+            const std::array<double, 3> weight = {cross(b - p, c - p) / doubled_area,
+                                                  cross(c - p, a - p) / doubled_area,
+                                                  cross(a - p, b - p) / doubled_area};
+            if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) continue;
+            double nearness = 0;
+            Vector3d normal = Vector3d::Zero();
+            double edge_distance = std::numeric_limits<double>::infinity();
+            for (size_t k = 0; k < 3; ++k) {
+                nearness += weight[k] * corners[k].nearness;
+                normal += weight[k] * corners[k].normal;
+                edge_distance = std::min(edge_distance, weight[k] * height[k]);
+            }
+            const size_t i = size_t{y} * canvas.side + x;
+            if (static_cast<float>(nearness) <= canvas.depth[i]) continue;
+            canvas.depth[i] = static_cast<float>(nearness);
+            const bool on_edge = wire && edge_distance < 0.4 * kSupersampling;
+            canvas.colour[i] = (on_edge ? Vector3d(kWire.array().pow(2.2)) : shade(normal)).cast<float>();
+        }
+    }
+}
+
+Picture average(const Canvas& canvas) {
+    Picture picture;
+    picture.width = picture.height = canvas.side / kSupersampling;
+    picture.rgb.reserve(size_t{3} * picture.width * picture.height);
+    for (uint32_t row = 0; row < picture.height; ++row) {
+        for (uint32_t column = 0; column < picture.width; ++column) {
+            Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+            for (uint32_t i = 0; i < kSupersampling; ++i) {
+                for (uint32_t j = 0; j < kSupersampling; ++j) {
+                    sum += canvas.colour[size_t{row * kSupersampling + i} * canvas.side + column * kSupersampling + j];
+                }
+            }
+            for (int k = 0; k < 3; ++k) {
+                picture.rgb.push_back(to_byte(static_cast<double>(sum[k]) / (kSupersampling * kSupersampling)));
+            }
+        }
+    }
+    return picture;
+}
+
+void fill_box(Picture& picture, double left, double top, double right, double bottom, uint8_t grey) {
+    const auto x1 = std::min(static_cast<uint32_t>(std::max(right, 0.0)), picture.width);
+    const auto y1 = std::min(static_cast<uint32_t>(std::max(bottom, 0.0)), picture.height);
+    for (auto y = static_cast<uint32_t>(std::max(top, 0.0)); y < y1; ++y) {
+        for (auto x = static_cast<uint32_t>(std::max(left, 0.0)); x < x1; ++x) {
+            std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{y} * picture.width + x)), 3,
+                        grey);
+        }
+    }
+}
+
+void draw_caption(Picture& picture, const std::string& text, uint32_t left, uint32_t width, uint32_t top) {
+    const std::vector<TextBox> boxes = text_boxes(text);
+    double extent = 1;
+    for (const TextBox& box : boxes) extent = std::max(extent, box.right);
+    const double scale = std::clamp(std::floor(0.95 * width / extent), 1.0, 2.0);
+    const double x = left + std::max(0.0, 0.5 * (width - scale * extent));
+    const double y = top + 0.5 * kCaptionHeight - 4 * scale;
+    for (const TextBox& box : boxes) {
+        fill_box(picture, x + scale * box.left, y + scale * box.top, x + scale * box.right, y + scale * box.bottom, 40);
+    }
+}
+
+}  // namespace
+
+Picture render_mesh(const TriangleMesh& mesh, const View& view) {
+    Canvas canvas(view.size);
+    const Bounds bounds = bounds_of(mesh);
+    const Vector3d extent = bounds.high - bounds.low;
+    const double radius = 0.5 * extent.norm();
+    if (!(radius > 0) || !std::isfinite(radius)) return average(canvas);
+
+    // Into camera axes, centred, radius 1.
+    const Matrix3d axes = camera_axes(view, extent);
+    const Vector3d centre = 0.5 * (bounds.low + bounds.high);
+    std::vector<Vector3d> seen(mesh.positions.size());
+    for (uint32_t v = 0; v < seen.size(); ++v) seen[v] = axes * (at(mesh, v) - centre) / radius;
+    const std::vector<Vector3d> normals = view.flat ? std::vector<Vector3d>() : smooth_normals(mesh, seen);
+
+    // Perspective, then the largest scale at which everything is inside.
+    std::vector<Vector2d> pixels(seen.size());
+    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
+    Vector2d high = -low;
+    for (size_t v = 0; v < seen.size(); ++v) {
+        pixels[v] = Vector2d(seen[v].x(), -seen[v].y()) / (kDistance - seen[v].z());
+    }
+    for (const auto& t : mesh.triangles) {
+        if (!is_finite(mesh, t)) continue;
+        for (const uint32_t v : t) {
+            low = low.cwiseMin(pixels[v]);
+            high = high.cwiseMax(pixels[v]);
+        }
+    }
+    const double scale = kFilled * canvas.side / std::max((high - low).maxCoeff(), 1e-12);
+    const Vector2d middle = 0.5 * (low + high);
+    for (Vector2d& p : pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * canvas.side);
+
+    for (const auto& t : mesh.triangles) {
+        if (!is_finite(mesh, t)) continue;
+        const Vector3d facet = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
+        std::array<Corner, 3> corners;
+        for (size_t k = 0; k < 3; ++k) {
+            // 1 / distance is linear over the picture.
+            corners[k] = {pixels[t[k]], 1 / (kDistance - seen[t[k]].z()), facet};
+            if (view.flat) continue;
+            const Vector3d& normal = normals[t[k]];
+            // Which side is seen is decided per triangle: an interpolated normal may lean over the silhouette.
+            corners[k].normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : facet;
+        }
+        const Vector3d to_eye = Vector3d(0, 0, kDistance) - seen[t[0]];
+        const bool front = facet.dot(to_eye) >= 0;
+        for (Corner& corner : corners) {
+            const double z = corner.normal.z();
+            if (front && z < 0) corner.normal.z() = 0;
+            if (!front && z >= 0) corner.normal.z() = -1e-9;
+        }
+        draw_triangle(corners, view.wire, canvas);
+    }
+    return average(canvas);
+}
+
+Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
+    Picture picture;
+    picture.width = picture.height = size;
+    picture.rgb.assign(size_t{3} * size * size, 255);
+    std::array<float, 3> low = {};
+    std::array<float, 3> high = {};
+    low.fill(std::numeric_limits<float>::infinity());
+    high.fill(-std::numeric_limits<float>::infinity());
+    for (const DecodedImage& image : images) {
+        for (size_t i = 0; i < image.grid.size(); ++i) {
+            low[i % 3] = std::min(low[i % 3], image.grid[i]);
+            high[i % 3] = std::max(high[i % 3], image.grid[i]);
+        }
+    }
+    const auto tiles =
+        static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(std::max<size_t>(images.size(), 1)))));
+    const uint32_t tile = size / tiles;
+    for (size_t i = 0; i < images.size(); ++i) {
+        const DecodedImage& image = images[i];
+        const auto left = static_cast<uint32_t>(i % tiles) * tile;
+        const auto top = static_cast<uint32_t>(i / tiles) * tile;
+        for (uint32_t y = 0; y < tile; ++y) {
+            for (uint32_t x = 0; x < tile; ++x) {
+                const uint32_t row = y * image.side / tile;
+                const uint32_t column = x * image.side / tile;
+                for (size_t k = 0; k < 3; ++k) {
+                    const float value = image.grid[3 * (size_t{row} * image.side + column) + k];
+                    const float range = high[k] - low[k];
+                    const float share = range > 0 ? (value - low[k]) / range : 0.5F;
+                    picture.rgb[3 * (size_t{top + y} * size + left + x) + k] =
+                        static_cast<uint8_t>(std::lround(255 * std::clamp(share, 0.0F, 1.0F)));
+                }
+            }
+        }
+    }
+    return picture;
+}
+
+Picture place_side_by_side(std::span<const Panel> panels) {
+    Picture all;
+    for (const Panel& panel : panels) {
+        all.width += panel.picture.width;
+        all.height = std::max(all.height, panel.picture.height);
+    }
+    const uint32_t caption_top = all.height;
+    all.height += kCaptionHeight;
+    all.rgb.assign(size_t{3} * all.width * all.height, 255);
+    uint32_t left = 0;
+    for (const Panel& panel : panels) {
+        const size_t row_bytes = size_t{3} * panel.picture.width;
+        for (uint32_t row = 0; row < panel.picture.height; ++row) {
+            std::copy_n(panel.picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
+                        all.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{row} * all.width + left)));
+        }
+        draw_caption(all, panel.caption, left, panel.picture.width, caption_top);
+        left += panel.picture.width;
+    }
+    return all;
+}
+
+Result<Bytes> write_png(const Picture& picture) {
+    Bytes bytes = png_bytes(picture.rgb.data(), picture.width, picture.height);
+    if (bytes.empty()) return Error{Stage::kWrite, "the PNG library failed (out of memory?)"};
+    return bytes;
+}
+
+}  // namespace gim

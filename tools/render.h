@@ -1,0 +1,48 @@
+// A small software rasteriser, so that a mesh can be looked at on any machine: z-buffer, one key and one fill light,
+// edges smoothed by averaging kSupersampling^2 samples per pixel. Deterministic. Cost O(triangles + pixels).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gim/encoder.h"
+#include "tools/decoded.h"
+#include "tools/file.h"
+
+namespace gim {
+
+struct Picture {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgb;  // row-major, top row first
+};
+
+enum class UpAxis { kAuto, kX, kY, kZ };  // kAuto: z for flat models that lie in the x-y plane (terrain), else y
+
+struct View {
+    UpAxis up = UpAxis::kAuto;
+    double azimuth = 35;    // degrees, turns the model about its up axis
+    double elevation = 20;  // degrees, looks down from above
+    uint32_t size = 512;    // pixels per side
+    bool flat = false;      // one normal per triangle instead of smooth shading
+    bool wire = false;      // draws the triangles' edges
+};
+
+// The whole mesh, filling the picture. Faces seen from behind are reddish, so that holes and flipped faces show.
+// Triangles with a non-finite corner are left out.
+Picture render_mesh(const TriangleMesh& mesh, const View& view);
+
+// The geometry images themselves, x y z of the bounding box as red green blue; several images as tiles.
+Picture render_images(std::span<const DecodedImage> images, uint32_t size);
+
+struct Panel {
+    Picture picture;
+    std::string caption;
+};
+// Panels of equal height from left to right, captions below.
+Picture place_side_by_side(std::span<const Panel> panels);
+
+Result<Bytes> write_png(const Picture& picture);
+
+}  // namespace gim

@@ -1,0 +1,57 @@
+#include "tools/report_json.h"
+
+namespace gim {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const TopologySummary& topology) {
+    return {{"vertices", topology.vertices},
+            {"edges", topology.edges},
+            {"triangles", topology.triangles},
+            {"components", topology.components},
+            {"boundary_loops", topology.boundary_loops},
+            {"boundary_edges", topology.boundary_edges},
+            {"euler", topology.euler},
+            {"genus", topology.genus},
+            {"nonmanifold_edges", topology.nonmanifold_edges},
+            {"nonmanifold_vertices", topology.nonmanifold_vertices},
+            {"misoriented_edges", topology.misoriented_edges},
+            {"manifold", topology.manifold},
+            {"watertight", topology.watertight}};
+}
+
+ordered_json to_json(const Comparison& comparison) {
+    return {{"diagonal", comparison.diagonal},
+            {"rms_to_test", comparison.rms_to_test},
+            {"rms_to_reference", comparison.rms_to_reference},
+            {"rms", comparison.rms},
+            {"max_to_test", comparison.max_to_test},
+            {"max_to_reference", comparison.max_to_reference},
+            {"hausdorff", comparison.hausdorff},
+            {"psnr", comparison.psnr}};
+}
+
+ordered_json to_json(const EncodeReport& report) {
+    ordered_json times = ordered_json::array();
+    for (const StageTime& time : report.times) times.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
+    return {{"input_vertices", report.input_vertices},
+            {"input_triangles", report.input_triangles},
+            {"welded_vertices", report.welded_vertices},
+            {"removed_triangles", report.removed_triangles},
+            {"topology", to_json(report.topology)},
+            {"side", report.side},
+            {"node_side", report.node_side},
+            {"cut_paths", report.cut_paths},
+            {"cut_length", report.cut_length},
+            {"stretch_efficiency", report.stretch_efficiency},
+            {"flipped_triangles", report.flipped_triangles},
+            {"bits_per_sample", report.bits_per_sample},
+            {"bits_per_vertex", report.bits_per_vertex},
+            {"file_bytes", report.file_bytes},
+            {"sideband_bytes", report.sideband_bytes},
+            {"error", to_json(report.error)},
+            {"times", times},
+            {"seconds", report.seconds}};
+}
+
+}  // namespace gim

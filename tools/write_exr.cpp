@@ -1,0 +1,105 @@
+// OpenEXR: float32 channels X, Y, Z (the cut closed) and mask (1 where the sample is defined). One part per image.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+
+#include "tools/surface_write.h"
+
+namespace gim {
+namespace {
+
+// OpenEXR writes to a stream and seeks back to fill in its offset table.
+class MemoryStream : public Imf::OStream {
+  public:
+    MemoryStream() : Imf::OStream("memory") {}
+    void write(const char c[], int n) override {
+        const auto count = static_cast<size_t>(n);
+        if (position_ + count > bytes.size()) bytes.resize(position_ + count);
+        std::copy(c, c + n, bytes.begin() + static_cast<std::ptrdiff_t>(position_));
+        position_ += count;
+    }
+    uint64_t tellp() override { return position_; }
+    void seekp(uint64_t position) override { position_ = position; }
+
+    Bytes bytes;
+
+  private:
+    uint64_t position_ = 0;
+};
+
+// The parts of one file must agree on the display window; the data windows may differ.
+Imf::Header header_of(const DecodedImage& image, uint32_t largest_side) {
+    const auto window = [](uint32_t side) {
+        const int last = static_cast<int>(side) - 1;
+        return Imath::Box2i(Imath::V2i(0, 0), Imath::V2i(last, last));
+    };
+    Imf::Header header(window(largest_side), window(image.side));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const char* name : {"X", "Y", "Z", "mask"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    return header;
+}
+
+// OpenEXR only reads from the slices, but asks for char*.
+char* base_of(const float* values) { return const_cast<char*>(reinterpret_cast<const char*>(values)); }
+
+Imf::FrameBuffer frame_of(const DecodedImage& image, const std::vector<float>& mask) {
+    Imf::FrameBuffer frame;
+    const size_t row = size_t{image.side} * sizeof(float);
+    frame.insert("X", Imf::Slice(Imf::FLOAT, base_of(image.grid.data()), 3 * sizeof(float), 3 * row));
+    frame.insert("Y", Imf::Slice(Imf::FLOAT, base_of(image.grid.data() + 1), 3 * sizeof(float), 3 * row));
+    frame.insert("Z", Imf::Slice(Imf::FLOAT, base_of(image.grid.data() + 2), 3 * sizeof(float), 3 * row));
+    frame.insert("mask", Imf::Slice(Imf::FLOAT, base_of(mask.data()), sizeof(float), row));
+    return frame;
+}
+
+std::vector<float> full_mask(const DecodedImage& image) {
+    return std::vector<float>(size_t{image.side} * image.side, 1.0F);
+}
+
+void write_parts(MemoryStream& stream, std::span<const DecodedImage> images) {
+    uint32_t largest_side = 0;
+    for (const DecodedImage& image : images) largest_side = std::max(largest_side, image.side);
+    std::vector<Imf::Header> headers;
+    for (size_t i = 0; i < images.size(); ++i) {
+        headers.push_back(header_of(images[i], largest_side));
+        headers.back().setName("image" + std::to_string(i));
+        headers.back().setType(Imf::SCANLINEIMAGE);
+    }
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
+    for (size_t i = 0; i < images.size(); ++i) {
+        const std::vector<float> mask = full_mask(images[i]);
+        Imf::OutputPart part(file, static_cast<int>(i));
+        part.setFrameBuffer(frame_of(images[i], mask));
+        part.writePixels(static_cast<int>(images[i].side));
+    }
+}
+
+}  // namespace
+
+Result<Bytes> write_exr(std::span<const DecodedImage> images) {
+    MemoryStream stream;
+    try {
+        if (images.size() == 1) {
+            const std::vector<float> mask = full_mask(images[0]);
+            Imf::OutputFile file(stream, header_of(images[0], images[0].side));
+            file.setFrameBuffer(frame_of(images[0], mask));
+            file.writePixels(static_cast<int>(images[0].side));
+        } else {
+            write_parts(stream, images);
+        }
+    } catch (const std::exception& failure) {
+        return Error{Stage::kWrite, std::string("OpenEXR: ") + failure.what()};
+    }
+    return std::move(stream.bytes);
+}
+
+}  // namespace gim
