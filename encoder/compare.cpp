@@ -7,6 +7,7 @@
 #include <string>
 
 #include "encoder/closest_point.h"
+#include "encoder/compare_meshes.h"
 #include "encoder/parallel.h"
 #include "encoder/result.h"
 #include "encoder/surface_samples.h"
@@ -103,19 +104,20 @@ double bounding_diagonal(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options) {
-    if (options.samples == 0) return Error{Stage::kCompare, "the number of samples is 0; ask for at least 1"};
-    GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
-    GIM_TRY(mesh_b, checked_mesh(test, "test"));
+ReferenceSurface::ReferenceSurface(Mesh mesh, uint32_t threads)
+    : mesh_(std::move(mesh)), tree_(mesh_, threads), diagonal_(bounding_diagonal(referenced_vertices(mesh_))) {}
 
-    const OneWay to_test = distance_to(mesh_a, ClosestPointTree(mesh_b, options.threads), options);
-    const OneWay to_reference = distance_to(mesh_b, ClosestPointTree(mesh_a, options.threads), options);
-    if (!to_test.has_area)
-        return Error{Stage::kCompare, "the reference mesh has no area: all its triangles are degenerate"};
-    if (!to_reference.has_area)
-        return Error{Stage::kCompare, "the test mesh has no area: all its triangles are degenerate"};
+Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOptions& options) const {
+    const auto no_area = [](const char* which) {
+        return Error{Stage::kCompare,
+                     "the " + std::string(which) + " mesh has no area: all its triangles are degenerate"};
+    };
+    const OneWay to_test = distance_to(mesh_, ClosestPointTree(test, options.threads), options);
+    if (!to_test.has_area) return no_area("reference");
+    const OneWay to_reference = distance_to(test, tree_, options);
+    if (!to_reference.has_area) return no_area("test");
     Comparison result;
-    result.diagonal = bounding_diagonal(referenced_vertices(mesh_a));
+    result.diagonal = diagonal_;
     result.rms_to_test = to_test.rms;
     result.rms_to_reference = to_reference.rms;
     result.rms = std::max(to_test.rms, to_reference.rms);
@@ -125,6 +127,13 @@ Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& te
     result.psnr =
         result.rms > 0 ? 20 * std::log10(result.diagonal / result.rms) : std::numeric_limits<double>::infinity();
     return result;
+}
+
+Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options) {
+    if (options.samples == 0) return Error{Stage::kCompare, "the number of samples is 0; ask for at least 1"};
+    GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
+    GIM_TRY(mesh_b, checked_mesh(test, "test"));
+    return ReferenceSurface(std::move(mesh_a), options.threads).compare(mesh_b, options);
 }
 
 }  // namespace gim

@@ -56,8 +56,9 @@ bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
 // The map being optimised on a mesh that is refined step by step.
 class Optimiser {
   public:
-    Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, std::vector<Vec2>& uv)
-        : mesh_(mesh), positions_(positions), uv_(uv), metric_(mesh.half_edge_count() / 3) {
+    Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const std::vector<double>& importance,
+              std::vector<Vec2>& uv)
+        : mesh_(mesh), positions_(positions), importance_(importance), uv_(uv), metric_(mesh.half_edge_count() / 3) {
         double area = 0;
         for (uint32_t f = 0; f < metric_.size(); ++f) {
             if (mesh_.alive(f)) area += 2 * metric_of(f, 0).weight;
@@ -111,8 +112,10 @@ class Optimiser {
 
   private:
     FaceMetric metric_of(uint32_t f, double least_area) const {
-        return face_metric(positions_[mesh_.origin(3 * f)], positions_[mesh_.origin(3 * f + 1)],
-                           positions_[mesh_.origin(3 * f + 2)], least_area);
+        const uint32_t a = mesh_.origin(3 * f), b = mesh_.origin(3 * f + 1), c = mesh_.origin(3 * f + 2);
+        FaceMetric metric = face_metric(positions_[a], positions_[b], positions_[c], least_area);
+        if (!importance_.empty()) metric.weight *= (importance_[a] + importance_[b] + importance_[c]) / 3;
+        return metric;
     }
     void load_star(uint32_t v) {
         star_.clear();
@@ -133,6 +136,7 @@ class Optimiser {
 
     ProgressiveMesh& mesh_;
     const std::vector<Vec3>& positions_;
+    const std::vector<double>& importance_;
     std::vector<Vec2>& uv_;
     std::vector<FaceMetric> metric_;
     std::vector<StarTriangle> star_;
@@ -168,7 +172,7 @@ Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_
     simplify(hierarchy, mesh.positions, {boundary + kBaseInterior, true, sides});
     if (!tutte_map(hierarchy, uv)) return Error{Stage::kParametrize, "the base map could not be solved"};
 
-    Optimiser optimiser(hierarchy, mesh.positions, uv);
+    Optimiser optimiser(hierarchy, mesh.positions, options.importance, uv);
     optimiser.sweep_until(kBaseSweeps, options.tolerance);
     const auto total = static_cast<double>(hierarchy.collapse_count());
     double sweep_at = options.growth * (hierarchy.vertex_count() - boundary);

@@ -19,6 +19,8 @@ struct ParametrizeOptions {
     int sweeps = 8;           // sweeps each time; more come closer to the optimum, time grows with it
     int final_sweeps = 40;    // at most, on the full mesh
     double tolerance = 2e-4;  // stop sweeping when a sweep gains less than this part of the energy
+    // Per vertex: how much its surroundings' stretch counts. Sample density follows the square root. Empty: 1 everywhere.
+    std::vector<double> importance;
 };
 
 // In:  a disk; per vertex the sides of the square it lies on (0: interior); `uv` with the boundary's positions set, the

@@ -1,0 +1,27 @@
+// Sample density that follows the shape: how much each part of the surface should count in the stretch energy.
+//
+// After: Sander, Gortler, Snyder, Hoppe. Signal-Specialized Parametrization. EGRW 2002. We differ in how the need is found: not
+// from derivatives of the signal, which a scanned mesh does not have, but from the error that a first sampling leaves. With
+// linear reconstruction the squared error falls with the square of the density, e^2 = C / density^2, and the least total
+// error for a given number of samples has density ~ C^(1/3). The stretch energy with weight w is least at density ~ w^(1/2).
+#pragma once
+
+#include <vector>
+
+#include "encoder/geometry_image.h"
+#include "encoder/mesh.h"
+
+namespace gim {
+
+struct DensityOptions {
+    double strength = 0.8;  // 0: even samples, 1: the optimum of the model above; less is safer, as the model is rough
+    double contrast = 50;   // the need is clamped to this factor around its median
+    int smoothing = 30;     // averaging steps over neighbours
+};
+
+// In:  the opened mesh, its map, and the image sampled with that map.
+// Out: per vertex the importance for ParametrizeOptions. Cost: one closest point a vertex, on all cores.
+std::vector<double> importance_from_error(const Mesh& mesh, const std::vector<Vec2>& uv, const GeometryImage& image,
+                                          const DensityOptions& options);
+
+}  // namespace gim

@@ -1,0 +1,111 @@
+#include "encoder/finish_encoding.h"
+
+#include <cmath>
+
+#include "encoder/compare_meshes.h"
+#include "encoder/decode_surface.h"
+#include "encoder/rate_control.h"
+#include "encoder/result.h"
+#include "gim/decoder.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kLeastSide = 5, kMostSide = 8193;
+
+Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
+                                const CompareOptions& options) {
+    GIM_TRY(decoded, decode_surface(bytes, 0));
+    return reference.compare(decoded, options);
+}
+
+uint64_t sideband_size(std::span<const uint8_t> bytes) {
+    gim_info info;
+    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return 0;
+    gim_chunk chunk;
+    for (uint32_t i = 0; gim_read_chunk(&info, bytes.data(), bytes.size(), i, &chunk) == GIM_OK; ++i) {
+        if (std::string_view(chunk.name) == "SEAM") return chunk.size;
+    }
+    return 0;
+}
+
+void describe_images(std::span<const GeometryImage> images, EncodeReport& report) {
+    report.side = images.front().side;
+    report.node_side = images.front().sideband.node_side;
+    for (const GeometryImage& image : images) report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+}
+
+void describe_file(std::span<const GeometryImage> images, std::span<const uint8_t> bytes, EncodeReport& report) {
+    double samples = 0;
+    for (const GeometryImage& image : images) samples += double(image.side) * image.side;
+    const double bits = 8.0 * static_cast<double>(bytes.size());
+    report.file_bytes = bytes.size();
+    report.sideband_bytes = sideband_size(bytes);
+    report.bits_per_sample = bits / samples;
+    report.bits_per_vertex = report.input_vertices > 0 ? bits / static_cast<double>(report.input_vertices) : 0;
+}
+
+}  // namespace
+
+Result<bool> check_options(const EncodeOptions& options) {
+    const auto is_grid = [](uint32_t side) {
+        return side >= kLeastSide && side <= kMostSide && ((side - 1) & (side - 2)) == 0;
+    };
+    const auto wrong = [](const std::string& what) { return Error{Stage::kInput, what}; };
+    if (!is_grid(options.side))
+        return wrong("the size must be 2^j + 1, from 5 to 8193 (257, 513, ...); not " + std::to_string(options.side));
+    if (!is_grid(options.node_side) || options.node_side > options.side) {
+        return wrong("the node grid must be 2^j + 1, from 5 to the size; not " + std::to_string(options.node_side));
+    }
+    if (options.bits < 8 || options.bits > 20)
+        return wrong("the bits must be from 8 to 20; not " + std::to_string(options.bits));
+    const double value = options.rate.value;
+    switch (options.rate.kind) {
+        case RateTarget::Kind::kQuality:
+            if (!(value >= 0 && value <= 100)) return wrong("the quality must be from 0 to 100");
+            break;
+        case RateTarget::Kind::kPsnr:
+            if (!(value > 0 && value <= 200)) return wrong("the PSNR must be above 0 and at most 200 dB");
+            break;
+        case RateTarget::Kind::kBytes:
+            if (!(value >= 1)) return wrong("the number of bytes must be at least 1");
+            break;
+        case RateTarget::Kind::kLossless:
+            break;
+    }
+    if (options.layout != Layout::kGim)
+        return wrong("only the single-chart layout (gim) is there yet; leave --layout out");
+    return true;
+}
+
+Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const EncodeOptions& options,
+                                StageClock& clock, Encoded encoded) {
+    describe_images(images, encoded.report);
+    const ReferenceSurface surface(std::move(reference), options.threads);
+    CompareOptions compare_options;
+    compare_options.threads = options.threads;
+
+    clock.begin(Stage::kCode);
+    CodingParameters parameters;
+    parameters.bits = options.bits;
+    parameters.base_side = options.node_side;
+    const JudgeFile judge = [&](std::span<const uint8_t> bytes) -> Result<double> {
+        GIM_TRY(comparison, compare_file(bytes, surface, compare_options));
+        return comparison.psnr;
+    };
+    GIM_TRY(bytes, code_to_target(images, parameters, options.rate, judge));
+    encoded.bytes = std::move(bytes);
+
+    clock.begin(Stage::kCompare);
+    GIM_TRY(comparison, compare_file(encoded.bytes, surface, compare_options));
+    encoded.report.error = comparison;
+    clock.end();
+
+    describe_file(images, encoded.bytes, encoded.report);
+    encoded.report.times = clock.times();
+    for (const StageTime& time : encoded.report.times) encoded.report.seconds += time.seconds;
+    return encoded;
+}
+
+}  // namespace gim

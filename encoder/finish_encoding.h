@@ -1,0 +1,38 @@
+// The end of every encoding: images to bytes that meet the rate target, and the figures of the run.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <exception>
+#include <new>
+#include <span>
+#include <string>
+
+#include "encoder/geometry_image.h"
+#include "encoder/mesh.h"
+#include "encoder/stage_clock.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// Ranges of EncodeOptions.
+Result<bool> check_options(const EncodeOptions& options);
+
+// Codes the images to the target of the options, judging the decoded surface against `reference`, and completes the report.
+Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const EncodeOptions& options,
+                                StageClock& clock, Encoded encoded);
+
+// Runs body on `threads` threads (0: all cores) and turns what it throws into an Error: nothing leaves a public function.
+template <class Body>
+Result<Encoded> guarded(uint32_t threads, const Body& body) {
+    try {
+        tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+        return arena.execute(body);
+    } catch (const std::bad_alloc&) {
+        return Error{Stage::kInput, "out of memory; take a smaller mesh or a smaller --size"};
+    } catch (const std::exception& e) {
+        return Error{Stage::kInput, std::string("internal error: ") + e.what()};
+    }
+}
+
+}  // namespace gim

@@ -1,0 +1,119 @@
+#include "encoder/rate_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "encoder/result.h"
+
+namespace gim {
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+// Quantizers are searched as their base-2 logarithm, between these.
+constexpr double kFinest = -6, kCoarsest = 18;
+constexpr int kMostFiles = 16;
+constexpr double kPsnrSlack = 0.1;     // dB above the target that are good enough
+constexpr double kBytesSlack = 0.005;  // part of the budget that may stay unused
+
+std::string decimal(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((75 - quality) / 10 + int(bits) - 12); }
+
+// About 6 dB per halving: the first guess after the first measurement, and the safeguard of the secant afterwards.
+constexpr double kDecibelPerOctave = 6;
+
+Result<Bytes> search_psnr(const GimWriter& writer, double start, double target, const JudgeFile& judge) {
+    double fine = kFinest - 1, coarse = kCoarsest + 1;  // judged good enough / too coarse so far, as logarithms
+    double fine_psnr = 0, coarse_psnr = 0, best_psnr = 0;
+    Bytes best;
+    double at = std::clamp(start, kFinest, kCoarsest);
+    for (int i = 0; i < kMostFiles; ++i) {
+        Bytes bytes = writer.write(std::exp2(at));
+        GIM_TRY(psnr, judge(bytes));
+        best_psnr = std::max(best_psnr, psnr);
+        if (psnr >= target) {
+            best = std::move(bytes);
+            fine = at, fine_psnr = psnr;
+            if (psnr <= target + kPsnrSlack || at >= kCoarsest) break;
+        } else {
+            coarse = at, coarse_psnr = psnr;
+            if (at <= kFinest) break;
+        }
+        const bool bracketed = fine >= kFinest && coarse <= kCoarsest;
+        if (bracketed && coarse - fine < 1e-3) break;
+        if (bracketed) {
+            // Aim a little above the target, and never too near to either end.
+            const double aim = target + 0.4 * kPsnrSlack;
+            const double part = std::clamp((fine_psnr - aim) / (fine_psnr - coarse_psnr), 0.1, 0.9);
+            at = fine + part * (coarse - fine);
+        } else {
+            const double step = (psnr - target) / kDecibelPerOctave;
+            at = std::clamp(at + (step >= 0 ? std::max(step, 0.05) : std::min(1.3 * step, -0.1)), kFinest, kCoarsest);
+        }
+    }
+    if (best.empty()) {
+        return Error{Stage::kCode, decimal(target) + " dB is out of reach: the samples themselves reach " +
+                                       decimal(best_psnr) + " dB; take a larger --size, or ask for less"};
+    }
+    return best;
+}
+
+Result<Bytes> search_bytes(const GimWriter& writer, double start, double budget) {
+    double fine = kFinest - 1, coarse = kCoarsest + 1;  // too large / small enough so far, as logarithms
+    Bytes best;
+    size_t smallest = SIZE_MAX;
+    double at = std::clamp(start, kFinest, kCoarsest);
+    for (int i = 0; i < 2 * kMostFiles; ++i) {
+        Bytes bytes = writer.write(std::exp2(at));
+        smallest = std::min(smallest, bytes.size());
+        const auto size = static_cast<double>(bytes.size());
+        if (size <= budget) {
+            coarse = at;
+            best = std::move(bytes);
+            if (size >= (1 - kBytesSlack) * budget || at <= kFinest) break;
+        } else {
+            fine = at;
+            if (at >= kCoarsest) break;
+        }
+        const bool bracketed = fine >= kFinest && coarse <= kCoarsest;
+        if (bracketed && coarse - fine < 1e-4) break;
+        at = bracketed ? 0.5 * (fine + coarse) : std::clamp(at + (size <= budget ? -2.0 : 2.0), kFinest, kCoarsest);
+    }
+    if (best.empty()) {
+        return Error{Stage::kCode, std::to_string(static_cast<uint64_t>(budget)) +
+                                       " bytes are too few: the smallest file of this size of image has " +
+                                       std::to_string(smallest) + "; take a smaller --size, or allow more"};
+    }
+    return best;
+}
+
+}  // namespace
+
+Result<Bytes> code_to_target(std::span<const GeometryImage> images, CodingParameters parameters,
+                             const RateTarget& target, const JudgeFile& judge) {
+    parameters.lossless = target.kind == RateTarget::Kind::kLossless;
+    const double start =
+        quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, parameters.bits);
+    parameters.quantizer = std::clamp(start, std::exp2(kFinest), std::exp2(kCoarsest));
+    GIM_TRY(writer, GimWriter::create(images, parameters));
+    switch (target.kind) {
+        case RateTarget::Kind::kLossless:
+        case RateTarget::Kind::kQuality:
+            return writer.write(parameters.quantizer);
+        case RateTarget::Kind::kPsnr:
+            return search_psnr(writer, std::log2(start), target.value, judge);
+        case RateTarget::Kind::kBytes:
+            return search_bytes(writer, std::log2(start), target.value);
+    }
+    return Error{Stage::kCode, "unknown rate target"};
+}
+
+}  // namespace gim

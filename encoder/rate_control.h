@@ -1,0 +1,26 @@
+// Chooses the quantizer that a rate target asks for, by coding and decoding until it is met.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "encoder/geometry_image.h"
+#include "encoder/write_gim.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// PSNR, in dB, of the surface that a file decodes to. Must be the same for the same bytes.
+using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
+
+// A complete file that meets the target:
+//   lossless  the quantized images are kept exactly
+//   quality   no search: 75 is a step of 8 quantization steps of a 12-bit quantizer, 10 more halve it
+//   psnr      the largest quantizer found whose file is judged not below `value`; an Error names the best in reach
+//   bytes     the smallest quantizer found whose file is not above `value`; an Error names the smallest size in reach
+// `parameters.lossless` and `parameters.quantizer` are set here. Cost: up to about 16 files written, each judged for psnr.
+Result<std::vector<uint8_t>> code_to_target(std::span<const GeometryImage> images, CodingParameters parameters,
+                                            const RateTarget& target, const JudgeFile& judge);
+
+}  // namespace gim
