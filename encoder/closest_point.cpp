@@ -349,8 +349,7 @@ ClosestPointTree::ClosestPointTree(const Mesh& mesh, uint32_t threads) : impl_(s
     });
     std::vector<Split> splits(count);
     uint32_t top = kNone;
-    tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
-    arena.execute([&] { top = build_range(items, splits, 0, count, 0); });
+    with_threads(threads, [&] { top = build_range(items, splits, 0, count, 0); });
 
     tree.corners.resize(count);
     tree.triangle.resize(count);

@@ -83,7 +83,7 @@ Squares squared_distances(const std::vector<Vec3>& points, const ClosestPointTre
 
 // Vertices are tried too: the largest distance is usually at one. They do not enter the mean.
 OneWay distance_to(const Mesh& from_mesh, const ClosestPointTree& surface, const CompareOptions& options) {
-    const SurfaceSamples samples = sample_surface(from_mesh, options.samples, options.seed, options.threads);
+    const SurfaceSamples samples = sample_by_area(from_mesh, options.samples, options.seed, options.threads);
     const Squares inside = squared_distances(samples.points, surface, options.threads);
     const Squares corners = squared_distances(referenced_vertices(from_mesh), surface, options.threads);
     OneWay result;

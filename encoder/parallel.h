@@ -11,6 +11,16 @@
 
 namespace gim {
 
+// Runs `work` where parallel loops use at most that many threads; 0: stays where it is.
+template <class Work>
+void with_threads(uint32_t threads, const Work& work) {
+    if (threads == 0) {
+        work();
+    } else {
+        tbb::task_arena(static_cast<int>(threads)).execute(work);
+    }
+}
+
 // Calls body(block, begin, end) once for every block of `block_size` indices of [0, count), in any order and
 // concurrently. threads = 0: all cores.
 template <class Body>
@@ -21,8 +31,7 @@ void parallel_blocks(size_t count, size_t block_size, uint32_t threads, const Bo
         for (size_t b = 0; b < blocks; ++b) run(b);
         return;
     }
-    tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
-    arena.execute([&] { tbb::parallel_for(size_t{0}, blocks, run); });
+    with_threads(threads, [&] { tbb::parallel_for(size_t{0}, blocks, run); });
 }
 
 // Sum of term(i) over [0, count): blocks in parallel, then the block sums in order.

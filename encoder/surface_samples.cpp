@@ -19,7 +19,7 @@ Vec2 fold(double u, double v) { return u + v <= 1 ? Vec2(u, v) : Vec2(1 - u, 1 -
 
 }  // namespace
 
-SurfaceSamples sample_surface(const Mesh& mesh, uint32_t count, uint64_t seed, uint32_t threads) {
+SurfaceSamples sample_by_area(const Mesh& mesh, uint32_t count, uint64_t seed, uint32_t threads) {
     const size_t faces = mesh.triangles.size();
     std::vector<double> area_before(faces + 1, 0.0);
     parallel_blocks(faces, 16384, threads, [&](size_t, size_t begin, size_t end) {

@@ -22,7 +22,7 @@ struct SurfaceSamples {
 };
 
 // No points when the mesh has no area.
-SurfaceSamples sample_surface(const Mesh& mesh, uint32_t count, uint64_t seed, uint32_t threads = 0);
+SurfaceSamples sample_by_area(const Mesh& mesh, uint32_t count, uint64_t seed, uint32_t threads = 0);
 
 // A well-mixed 64-bit hash: the one source of "randomness" of the samplers.
 inline uint64_t mix_bits(uint64_t x) {

@@ -17,7 +17,7 @@ Mesh to_mesh(const TriangleMesh& input) {
 TEST(SurfaceSamples, EveryTriangleGetsItsShareToWithinTwo) {
     const Mesh mesh = to_mesh(corpus::torus(40, 20, 0.7, 0.3));
     const uint32_t count = 50000;
-    const SurfaceSamples samples = sample_surface(mesh, count, 5);
+    const SurfaceSamples samples = sample_by_area(mesh, count, 5);
     ASSERT_EQ(samples.points.size(), count);
     std::vector<double> got(mesh.triangles.size(), 0);
     for (const uint32_t f : samples.triangles) ++got[f];
@@ -26,7 +26,7 @@ TEST(SurfaceSamples, EveryTriangleGetsItsShareToWithinTwo) {
 
 TEST(SurfaceSamples, PointsLieInTheirTriangles) {
     const Mesh mesh = to_mesh(corpus::limbed_blob(20));
-    const SurfaceSamples samples = sample_surface(mesh, 3000, 1);
+    const SurfaceSamples samples = sample_by_area(mesh, 3000, 1);
     for (size_t k = 0; k < samples.points.size(); ++k) {
         const Triangle& t = mesh.triangles[samples.triangles[k]];
         const Vec2& b = samples.barycentrics[k];
@@ -40,7 +40,7 @@ TEST(SurfaceSamples, PointsLieInTheirTriangles) {
 
 TEST(SurfaceSamples, IntegratesOverASquareMuchBetterThanChance) {
     const Mesh square{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, {{0, 1, 2}, {0, 2, 3}}};
-    const SurfaceSamples samples = sample_surface(square, 10000, 3);
+    const SurfaceSamples samples = sample_by_area(square, 10000, 3);
     double mean = 0;
     for (const Vec3& p : samples.points) mean += p[0] * p[0] * p[1] / 10000;
     EXPECT_NEAR(mean, 1.0 / 6, 5e-4);  // chance alone: about 2e-3
@@ -48,18 +48,18 @@ TEST(SurfaceSamples, IntegratesOverASquareMuchBetterThanChance) {
 
 TEST(SurfaceSamples, OnlyTheSeedChangesThem) {
     const Mesh mesh = to_mesh(corpus::sphere(8));
-    const SurfaceSamples one = sample_surface(mesh, 30000, 2, 1), two = sample_surface(mesh, 30000, 2, 2);
+    const SurfaceSamples one = sample_by_area(mesh, 30000, 2, 1), two = sample_by_area(mesh, 30000, 2, 2);
     EXPECT_EQ(one.points, two.points);
     EXPECT_EQ(one.triangles, two.triangles);
-    EXPECT_NE(one.points, sample_surface(mesh, 30000, 3, 1).points);
+    EXPECT_NE(one.points, sample_by_area(mesh, 30000, 3, 1).points);
 }
 
 TEST(SurfaceSamples, TrianglesWithoutAreaGetNone) {
     Mesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 0, 1}, {0, 1, 2}, {1, 1, 2}, {2, 2, 2}}};
-    for (const uint32_t f : sample_surface(mesh, 1000, 1).triangles) ASSERT_EQ(f, 1u);
+    for (const uint32_t f : sample_by_area(mesh, 1000, 1).triangles) ASSERT_EQ(f, 1u);
     mesh.triangles = {{0, 0, 1}};
-    EXPECT_TRUE(sample_surface(mesh, 1000, 1).points.empty());
-    EXPECT_TRUE(sample_surface(Mesh{}, 1000, 1).points.empty());
+    EXPECT_TRUE(sample_by_area(mesh, 1000, 1).points.empty());
+    EXPECT_TRUE(sample_by_area(Mesh{}, 1000, 1).points.empty());
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// Fits the samples of a geometry image to the surface that they were taken from: the image's triangles come as near to
+// it as their number allows.
+//
+// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.6 (geometry-image
+// optimization), whose point-to-point springs we replace: both surfaces are sampled, the distances count nearly only
+// along the normal, a membrane that is relaxed step by step keeps the grid regular, and no face may turn away from the
+// surface.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "encoder/geometry_image.h"
+#include "encoder/mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct FitOptions {
+    enum class Strength {
+        kStiff,  // for coded images: samples hardly slide, so the bytes hardly grow; +3 to +4 dB
+        kLoose,  // for lossless and uncompressed images: samples find the surface's creases; +8 to +11 dB
+    };
+    Strength strength = Strength::kLoose;
+    uint32_t rounds = 0;  // 0: as many as the strength needs; more approach the optimum a little further
+    uint64_t seed = 1;
+    uint32_t threads = 0;    // 0: all cores; the result does not depend on it
+    std::vector<bool> held;  // empty, or per sample: stays where it is, and the faces at it are not compared
+};
+
+// Both one-way RMS distances are in the unit of the mesh.
+struct FitQuality {
+    double to_image = 0;      // reference -> image
+    double to_reference = 0;  // image -> reference
+    uint64_t folds = 0;       // faces that look away from the reference at their centre
+};
+
+struct Fitted {
+    GeometryImage image;
+    FitQuality before, after;
+    uint32_t rounds = 0;
+    bool improved = false;  // false: the image is the start, unchanged
+};
+
+// In:  an image whose glued samples are at (nearly) equal positions, and the oriented surface it was sampled from.
+// Samples on
+//      input boundaries (paths without a mate) stay on the reference's boundary curve.
+// Out: an image that is nowhere cracked, no worse than the start in either one-way distance, and with no more folds; or
+// the
+//      start itself where the fit did not manage that.
+// Cost: O(samples + reference) a round; 257 x 257 loose: some seconds on two cores. The same result for any thread
+// count.
+Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
+                   const Progress& progress = {});
+
+// How far an image is from a surface, and how often it folds over.
+Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held = {},
+                               uint32_t threads = 0);
+
+}  // namespace gim

@@ -1,0 +1,63 @@
+// Symmetric positive definite systems on a square grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
+// the eight neighbours, some ring samples glued into one unknown. Solved by conjugate gradients with a 3 x 3 block
+// Jacobi preconditioner; in floats, plane after plane, so that the loops over a row vectorise.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "encoder/grid_surface.h"
+#include "encoder/mesh.h"
+
+namespace gim {
+
+// xx, xy, xz, yy, yz, zz.
+using SymmetricBlock = std::array<float, 6>;
+
+class StencilMatrix {
+  public:
+    explicit StencilMatrix(uint32_t side) : side_(side) {
+        for (auto& planes : block_) {
+            for (auto& plane : planes) plane.assign(size_t{side} * side, 0.0f);
+        }
+    }
+
+    uint32_t side() const { return side_; }
+
+    // Adds a block between two samples that are neighbours (or one and the same).
+    void add(uint32_t i, uint32_t j, const SymmetricBlock& block, float factor) {
+        if (i > j) std::swap(i, j);
+        const uint32_t offset = j - i;
+        const size_t kind = offset == 0       ? kDiagonal
+                            : offset == 1     ? kEast
+                            : offset == side_ ? kSouth
+                            : offset > side_  ? kSouthEast
+                                              : kSouthWest;
+        for (size_t k = 0; k < 6; ++k) block_[kind][k][i] += factor * block[k];
+    }
+
+    enum Kind : size_t { kDiagonal, kEast, kSouth, kSouthEast, kSouthWest, kKinds };
+    const float* plane(Kind kind, size_t k) const { return block_[kind][k].data(); }
+
+  private:
+    uint32_t side_;
+    std::array<std::array<std::vector<float>, 6>, kKinds> block_;
+};
+
+struct SolverOptions {
+    uint32_t most_steps = 60;
+    double tolerance = 1e-3;  // of the residual, relative to the right side's
+};
+
+struct Solution {
+    std::vector<Vec3> values;  // per sample; equal within a class
+    uint32_t steps = 0;
+};
+
+// `right`: per sample; the right side of a glued unknown is the sum over its class. `fixed` samples keep the value
+// zero. The same bits for any number of threads.
+Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const RingGluing& gluing,
+               const std::vector<bool>& fixed, const SolverOptions& options);
+
+}  // namespace gim

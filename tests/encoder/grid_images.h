@@ -1,0 +1,54 @@
+// Small geometry images with known gluing, for the tests of the stages after sampling.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "encoder/geometry_image.h"
+#include "encoder/mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+inline Mesh mesh_of(const TriangleMesh& input) {
+    Mesh mesh;
+    for (const auto& p : input.positions) mesh.positions.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles = input.triangles;
+    return mesh;
+}
+
+// `at` of (u, v) in the unit square: columns run along u, rows along v.
+inline GeometryImage image_of(uint32_t side, const Sideband& sideband, const std::function<Vec3(double, double)>& at) {
+    GeometryImage image;
+    image.side = side;
+    image.sideband = sideband;
+    for (uint32_t row = 0; row < side; ++row) {
+        for (uint32_t column = 0; column < side; ++column) {
+            image.positions.push_back(at(double(column) / (side - 1), double(row) / (side - 1)));
+        }
+    }
+    return image;
+}
+
+// A torus, opposite sides of the square glued; the grid slants so that it misses the lines of a regular mesh.
+inline GeometryImage torus_image(uint32_t side, double radius, double tube_radius) {
+    const Sideband sideband{2, 0, {{2, 1}, {3, 1}, {0, 1}, {1, 1}}};
+    GeometryImage image = image_of(side, sideband, [=](double u, double v) {
+        const double wave = 0.02 * std::sin(2 * std::numbers::pi * (u + 2 * v));
+        const double a = 2 * std::numbers::pi * (u + wave), b = 2 * std::numbers::pi * (v + wave + 0.1);
+        const double from_axis = radius + tube_radius * std::cos(b);
+        return Vec3(from_axis * std::cos(a), from_axis * std::sin(a), tube_radius * std::sin(b));
+    });
+    for (uint32_t k = 0; k < side; ++k) {
+        image.at(side - 1, k) = image.at(0, k);
+        image.at(k, side - 1) = image.at(k, 0);
+    }
+    image.at(side - 1, side - 1) = image.at(0, 0);
+    return image;
+}
+
+// One path all around: the rim of the square is the boundary of the surface.
+inline Sideband open_sideband() { return {2, 0, {{kNoMate, 4}}}; }
+
+}  // namespace gim
