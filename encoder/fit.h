@@ -24,8 +24,8 @@ struct FitOptions {
     Strength strength = Strength::kLoose;
     uint32_t rounds = 0;  // 0: as many as the strength needs; more approach the optimum a little further
     uint64_t seed = 1;
-    uint32_t threads = 0;    // 0: all cores; the result does not depend on it
-    std::vector<bool> held;  // empty, or per sample: stays where it is, and the faces at it are not compared
+    uint32_t threads = 0;         // 0: all cores; the result does not depend on it
+    std::vector<bool> held = {};  // empty, or per sample: stays where it is, and the faces at it are not compared
 };
 
 // Both one-way RMS distances are in the unit of the mesh.
