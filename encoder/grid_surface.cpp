@@ -2,95 +2,94 @@
 #include "encoder/grid_surface.h"
 
 #include <algorithm>
+#include <memory>
+#include <numeric>
 #include <string>
 
-#include "encoder/disjoint_sets.h"
 #include "encoder/parallel.h"
 
 namespace gim {
 
 namespace {
 
-// Ring sample k of a square, as a sample index (format/sideband.h defines the order).
-uint32_t ring_sample(uint32_t side, uint32_t k) {
-    const uint32_t last = side - 1;
-    if (k < last) return k;
-    if (k < 2 * last) return (k - last) * side + last;
-    if (k < 3 * last) return last * side + (3 * last - k);
-    return (4 * last - k) * side;
+Error bad_seams(const std::string& why) { return Error{Stage::kFit, "the image's seams are inconsistent: " + why}; }
+
+// Samples of the ring, in ring order.
+std::vector<uint32_t> ring_samples(uint32_t side) {
+    std::vector<uint32_t> samples(ring_length(side));
+    for (uint32_t k = 0; k < samples.size(); ++k) {
+        const GridPoint at = ring_point(side, k);
+        samples[k] = at.row * side + at.column;
+    }
+    return samples;
 }
 
-Error bad_sideband(const std::string& why) { return Error{Stage::kFit, "the image's seams are inconsistent: " + why}; }
+void mark_boundary(const SeamTable& table, uint32_t side, const std::vector<uint32_t>& ring,
+                   std::vector<bool>& marked) {
+    if (table.path_count == 0) {
+        for (const uint32_t v : ring) marked[v] = true;
+        return;
+    }
+    const uint32_t unit = (side - 1) / (table.node_side - 1);
+    for (uint32_t p = 0; p < table.path_count; ++p) {
+        if (table.mate[p] != SeamTable::kBoundary) continue;
+        for (uint32_t k = table.first[p] * unit; k <= table.first[p + 1] * unit; ++k)
+            marked[ring[k % ring.size()]] = true;
+    }
+}
 
 }  // namespace
 
 Result<RingGluing> glue_ring(const Sideband& sideband, uint32_t side) {
+    const auto table = std::make_unique<SeamTable>();
+    if (build_seam_table(sideband, table.get()) != Status::kOk)
+        return bad_seams("the paths do not fill the ring in pairs");
+    if (!is_grid_side(side) || side < table->node_side) return bad_seams("the node grid is finer than the image");
+
     const size_t samples = size_t{side} * side;
     RingGluing gluing;
     gluing.representative.resize(samples);
-    gluing.on_input_boundary.assign(samples, false);
+    std::iota(gluing.representative.begin(), gluing.representative.end(), 0u);
     gluing.class_of.assign(samples, kNone);
-    for (uint32_t v = 0; v < samples; ++v) gluing.representative[v] = v;
+    gluing.on_input_boundary.assign(samples, false);
 
-    const uint32_t ring = 4 * (side - 1);
-    if (sideband.paths.empty()) {
-        for (uint32_t k = 0; k < ring; ++k) gluing.on_input_boundary[ring_sample(side, k)] = true;
-        return gluing;
+    const std::vector<uint32_t> ring = ring_samples(side);
+    mark_boundary(*table, side, ring, gluing.on_input_boundary);
+    std::vector<uint32_t> class_at(ring.size());
+    ring_classes(*table, side, class_at);
+    std::vector<std::vector<uint32_t>> members(ring.size());
+    for (size_t k = 0; k < ring.size(); ++k) members[class_at[k]].push_back(ring[k]);
+    for (std::vector<uint32_t>& glued : members) {
+        if (glued.size() < 2) continue;
+        std::sort(glued.begin(), glued.end());
+        const bool boundary =
+            std::any_of(glued.begin(), glued.end(), [&](uint32_t v) { return gluing.on_input_boundary[v]; });
+        for (const uint32_t v : glued) {
+            gluing.representative[v] = glued.front();
+            gluing.class_of[v] = static_cast<uint32_t>(gluing.shared.size());
+            gluing.on_input_boundary[v] = boundary;
+        }
+        gluing.shared.push_back(std::move(glued));
     }
-    if (sideband.node_side < 2 || (side - 1) % (sideband.node_side - 1) != 0) {
-        return bad_sideband("the node grid does not divide the image");
-    }
-    const uint32_t unit = (side - 1) / (sideband.node_side - 1);
-    std::vector<uint32_t> first(sideband.paths.size() + 1, sideband.start * unit);
-    for (size_t p = 0; p < sideband.paths.size(); ++p) first[p + 1] = first[p] + sideband.paths[p].length * unit;
-    if (first.back() - first.front() != ring) return bad_sideband("the paths do not fill the ring");
 
-    DisjointSets same(samples);
-    for (size_t p = 0; p < sideband.paths.size(); ++p) {
-        const CutPath& path = sideband.paths[p];
-        const uint32_t length = path.length * unit;
-        if (path.mate == kNoMate) {
-            for (uint32_t k = 0; k <= length; ++k)
-                gluing.on_input_boundary[ring_sample(side, (first[p] + k) % ring)] = true;
-            continue;
+    const uint32_t cells = side - 1;
+    gluing.split.assign(size_t{cells} * cells, Split::kShorter);
+    for (uint32_t row = 0; row < cells; ++row) {
+        const bool row_end = row == 0 || row == cells - 1;
+        for (uint32_t column = 0; column < cells; column += row_end || cells < 2 ? 1 : cells - 1) {
+            const auto at = [&](uint32_t k) { return class_at[k]; };
+            gluing.split[size_t{row} * cells + column] = rim_split(side, row, column, at);
         }
-        if (path.mate < 0 || static_cast<size_t>(path.mate) >= sideband.paths.size() ||
-            sideband.paths[path.mate].length != path.length) {
-            return bad_sideband("path " + std::to_string(p) + " and its mate differ");
-        }
-        const uint32_t mate_end = first[path.mate] + length;
-        for (uint32_t k = 0; k <= length; ++k) {
-            same.unite(ring_sample(side, (first[p] + k) % ring), ring_sample(side, (mate_end - k) % ring));
-        }
-    }
-    std::vector<std::vector<uint32_t>> members(samples);
-    std::vector<uint32_t> ring_samples(ring);
-    for (uint32_t k = 0; k < ring; ++k) ring_samples[k] = ring_sample(side, k);
-    std::sort(ring_samples.begin(), ring_samples.end());
-    for (const uint32_t v : ring_samples) {
-        gluing.representative[v] = same.find(v);
-        members[gluing.representative[v]].push_back(v);
-    }
-    for (const uint32_t v : ring_samples) {
-        if (members[v].size() < 2) continue;
-        bool boundary = false;
-        for (const uint32_t member : members[v]) boundary = boundary || gluing.on_input_boundary[member];
-        for (const uint32_t member : members[v]) {
-            gluing.on_input_boundary[member] = boundary;
-            gluing.class_of[member] = static_cast<uint32_t>(gluing.shared.size());
-        }
-        gluing.shared.push_back(std::move(members[v]));
     }
     return gluing;
 }
 
-std::array<Triangle, 2> split_cell(const std::vector<Vec3>& positions, uint32_t side, const RingGluing&,
+std::array<Triangle, 2> split_cell(const std::vector<Vec3>& positions, uint32_t side, const RingGluing& gluing,
                                    uint32_t cell) {
-    const uint32_t last = side - 2, row = cell / (side - 1), column = cell % (side - 1);
-    const uint32_t a = row * side + column, b = a + 1, c = a + side, d = c + 1;
-    bool main = (positions[a] - positions[d]).squaredNorm() <= (positions[b] - positions[c]).squaredNorm();
-    // A diagonal that cuts a corner of the square off would join two samples of the ring.
-    if ((row == 0 || row == last) && (column == 0 || column == last)) main = (row == 0) == (column == 0);
+    const uint32_t a = cell / (side - 1) * side + cell % (side - 1), b = a + 1, c = a + side, d = c + 1;
+    const bool shorter_main =
+        (positions[a] - positions[d]).squaredNorm() <= (positions[b] - positions[c]).squaredNorm();
+    const bool main = gluing.split[cell] == Split::kMain || (gluing.split[cell] != Split::kAnti && shorter_main);
     if (main) return {Triangle{a, b, d}, Triangle{a, d, c}};
     return {Triangle{a, b, c}, Triangle{b, d, c}};
 }

@@ -7,6 +7,7 @@
 
 #include "encoder/geometry_image.h"
 #include "encoder/mesh.h"
+#include "format/seam.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -16,6 +17,7 @@ struct RingGluing {
     std::vector<uint32_t> representative;       // per sample: the first sample of its class, itself if alone
     std::vector<std::vector<uint32_t>> shared;  // classes of more than one sample, ascending
     std::vector<uint32_t> class_of;             // per sample: index into `shared`, or kNone if alone
+    std::vector<Split> split;                   // per cell: which way, where the rim leaves no choice
     std::vector<bool> on_input_boundary;        // per sample: a boundary path of the input's surface passes through it
 };
 
