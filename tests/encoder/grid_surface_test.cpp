@@ -50,19 +50,22 @@ TEST(GridSurface, BoundarySpreadsOverTheClassOfACutNode) {
 }
 
 TEST(GridSurface, ShorterDiagonalIsTaken) {
-    GeometryImage image = image_of(4, open_sideband(), [](double u, double v) { return Vec3(3 * u, 3 * v, 0); });
-    image.at(1, 1) += Vec3(0.2, 0.2, 0);
+    GeometryImage image = image_of(5, open_sideband(), [](double u, double v) { return Vec3(4 * u, 4 * v, 0); });
     const auto gluing = glue_ring(image.sideband, image.side);
-    const auto triangles = triangulate_grid(image.positions, image.side, gluing.value());
-    EXPECT_EQ(triangles[2 * 4], (Triangle{5, 6, 10}));  // the middle cell, along 5-10
-    EXPECT_EQ(triangles[2 * 4 + 1], (Triangle{5, 10, 9}));
+    ASSERT_TRUE(gluing.ok());
+    const uint32_t cell = 5;  // of samples 6, 7, 11, 12
+    image.at(1, 1) += Vec3(0.2, 0.2, 0);
+    const auto main = split_cell(image.positions, image.side, gluing.value(), cell);
+    EXPECT_EQ(main[0], (Triangle{6, 7, 12}));
+    EXPECT_EQ(main[1], (Triangle{6, 12, 11}));
     image.at(1, 1) -= Vec3(0.4, 0.4, 0);
-    EXPECT_EQ(triangulate_grid(image.positions, image.side, gluing.value())[2 * 4], (Triangle{5, 6, 9}));
+    EXPECT_EQ(split_cell(image.positions, image.side, gluing.value(), cell)[0], (Triangle{6, 7, 11}));
+    EXPECT_EQ(triangulate_grid(image.positions, image.side, gluing.value())[2 * cell], (Triangle{6, 7, 11}));
 }
 
 TEST(GridSurface, InconsistentSeamsAreRefused) {
     EXPECT_FALSE(glue_ring({2, 0, {{2, 1}, {3, 1}, {0, 1}}}, 5).ok());  // ring not filled
-    EXPECT_FALSE(glue_ring({4, 0, {{kNoMate, 12}}}, 5).ok());           // node grid does not divide
+    EXPECT_FALSE(glue_ring({9, 0, {{kNoMate, 32}}}, 5).ok());           // node grid finer than the image
     EXPECT_FALSE(glue_ring({3, 0, {{1, 3}, {0, 5}}}, 5).ok());          // mates of different lengths
     EXPECT_FALSE(glue_ring({2, 0, {{7, 2}, {0, 2}}}, 5).ok());          // no such mate
 }
