@@ -12,8 +12,8 @@ namespace gim {
 Result<RawImage> read_raw_image(const Bytes& bytes) {
     constexpr size_t kSampleSize = 3 * sizeof(float);
     RawImage image;
-    const auto samples = static_cast<double>(bytes.size() / kSampleSize);
-    image.side = static_cast<uint32_t>(std::lround(std::sqrt(samples)));
+    const size_t samples = bytes.size() / kSampleSize;
+    image.side = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(samples))));
     if (bytes.empty() || size_t{image.side} * image.side * kSampleSize != bytes.size()) {
         return Error{Stage::kInput, "neither a .gim file (the magic number is missing) nor a headerless float image (" +
                                         std::to_string(bytes.size()) +

@@ -180,8 +180,9 @@ class Body {
     size_t next_length(const Property& list) {
         const double length = next(list.count_type);
         const size_t left = encoding_ == Encoding::kAscii ? text_.size() - scanner_.offset() : text_.size() - position_;
-        const size_t least = encoding_ == Encoding::kAscii ? 1 : size_of(list.type);
-        if (!(length >= 0) || length > static_cast<double>(left / least)) failed = true;
+        const size_t least = encoding_ == Encoding::kAscii ? 1 : std::max<size_t>(size_of(list.type), 1);
+        const size_t most = left / least;
+        if (!(length >= 0) || length > static_cast<double>(most)) failed = true;
         return failed ? 0 : static_cast<size_t>(length);
     }
 

@@ -1,0 +1,367 @@
+// The gim program as its users meet it: exit status, what stands on stdout and stderr, what is left on the disk.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "corpus/corpus.h"
+#include "tests/tools/test_files.h"
+
+namespace gim {
+namespace {
+
+using nlohmann::json;
+using test::load_text;
+using test::save;
+using test::TemporaryFolder;
+
+struct Outcome {
+    int status = -1;
+    std::string out, err;
+};
+
+// Starts the program itself, no shell between.
+Outcome gim(std::vector<std::string> arguments) {
+    const TemporaryFolder folder;
+    const std::string out = folder.file("out");
+    const std::string err = folder.file("err");
+    arguments.insert(arguments.begin(), GIM_PROGRAM);
+    std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+        ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+        ::execv(GIM_PROGRAM, argv.data());
+        ::_exit(127);
+    }
+    int state = 0;
+    ::waitpid(child, &state, 0);
+    return {WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state), load_text(out), load_text(err)};
+}
+
+std::string obj_text(const TriangleMesh& mesh) {
+    std::string text;
+    char line[120];
+    for (const auto& p : mesh.positions) {
+        std::snprintf(line, sizeof(line), "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+        text += line;
+    }
+    for (const auto& t : mesh.triangles) {
+        std::snprintf(line, sizeof(line), "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
+        text += line;
+    }
+    return text;
+}
+
+void save_corpus_mesh(const std::string& name, const std::string& path) {
+    const corpus::CorpusEntry entry = corpus::corpus().named(name);
+    ASSERT_EQ(entry.name, name);
+    save(path, obj_text(entry.mesh()));
+}
+
+// One small encoded torus for all tests that only read it.
+class Cli : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        shared_folder = new TemporaryFolder;
+        save_corpus_mesh("torus-576", mesh_path());
+        encoded = gim({"encode", mesh_path(), gim_path(), "--size", "65", "--node-side", "9", "--lossless", "--json",
+                       shared_folder->file("report.json")});
+    }
+    static void TearDownTestSuite() {
+        delete shared_folder;
+        shared_folder = nullptr;
+    }
+    static std::string mesh_path() { return shared_folder->file("torus.obj"); }
+    static std::string gim_path() { return shared_folder->file("torus.gim"); }
+
+    static inline TemporaryFolder* shared_folder = nullptr;
+    static inline Outcome encoded;
+    TemporaryFolder folder;
+};
+
+TEST_F(Cli, EncodePrintsFiguresAndWritesTheReport) {
+    ASSERT_EQ(encoded.status, 0) << encoded.err;
+    EXPECT_NE(encoded.out.find("PSNR"), std::string::npos);
+    EXPECT_EQ(encoded.err, "");  // no terminal, no progress
+    const json report = json::parse(load_text(shared_folder->file("report.json")));
+    EXPECT_EQ(report["input_vertices"], 288);
+    EXPECT_EQ(report["file_bytes"], std::filesystem::file_size(gim_path()));
+    EXPECT_EQ(report["topology"]["genus"], 1);
+    EXPECT_EQ(report["flipped_triangles"], 0);
+    EXPECT_FALSE(report["times"].empty());
+    EXPECT_GT(report["error"]["psnr"], 40);
+}
+
+TEST_F(Cli, QuietSaysNothingAndJsonCanGoToStdout) {
+    const Outcome quiet =
+        gim({"encode", mesh_path(), folder.file("a.gim"), "--size", "33", "--node-side", "9", "--quiet"});
+    EXPECT_EQ(quiet.status, 0);
+    EXPECT_EQ(quiet.out + quiet.err, "");
+    const Outcome piped =
+        gim({"encode", mesh_path(), folder.file("b.gim"), "--size", "33", "--node-side", "9", "--json", "-"});
+    EXPECT_EQ(piped.status, 0);
+    EXPECT_TRUE(json::accept(piped.out)) << piped.out;
+    EXPECT_EQ(load_text(folder.file("a.gim")), load_text(folder.file("b.gim"))) << "same input, same bytes";
+}
+
+TEST_F(Cli, EveryOutputFormatIsTheSameWatertightSurfaceAtEveryLevel) {
+    const Outcome info = gim({"info", gim_path(), "--json"});
+    ASSERT_EQ(info.status, 0) << info.err;
+    const json description = json::parse(info.out);
+    EXPECT_EQ(description["layout"], "gim");
+    EXPECT_EQ(description["coding"], "lossless");
+    EXPECT_EQ(description["bytes"], std::filesystem::file_size(gim_path()));
+    EXPECT_TRUE(description["intact"]);
+    const json levels = description["images"][0]["levels"];
+    ASSERT_GE(levels.size(), 3U);
+
+    for (const json& level : levels) {
+        const std::string number = std::to_string(level["level"].get<int>());
+        for (const std::string extension : {"ply", "obj", "off", "stl", "glb"}) {
+            const std::string path = folder.file("torus" + number + "." + extension);
+            const Outcome decode = gim({"decode", gim_path(), path, "--level", number});
+            ASSERT_EQ(decode.status, 0) << decode.err;
+            const Outcome compare = gim({"compare", gim_path(), path, "--json", "--samples", "2000"});
+            ASSERT_EQ(compare.status, 0) << compare.err;
+            const json result = json::parse(compare.out);
+            EXPECT_TRUE(result["test"]["topology"]["watertight"]) << extension << " level " << number;
+            EXPECT_EQ(result["test"]["topology"]["genus"], 1) << extension << " level " << number;
+            EXPECT_EQ(result["test"]["topology"]["triangles"], level["triangles"]);
+            EXPECT_EQ(result["test"]["topology"]["vertices"], level["vertices"]) << extension;
+            if (level["level"] == 0) {
+                EXPECT_LT(result["comparison"]["hausdorff"].get<double>(),
+                          1e-6 * result["comparison"]["diagonal"].get<double>());
+            }
+        }
+    }
+    EXPECT_EQ(gim({"decode", gim_path(), folder.file("torus.exr")}).status, 0);
+    const Outcome beyond = gim({"decode", gim_path(), folder.file("x.ply"), "--level", "12"});
+    EXPECT_EQ(beyond.status, 1);
+    EXPECT_NE(beyond.err.find("coarsest level"), std::string::npos) << beyond.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("x.ply")));
+}
+
+TEST_F(Cli, InfoIsForPeopleToo) {
+    const Outcome info = gim({"info", gim_path()});
+    EXPECT_EQ(info.status, 0);
+    for (const char* word : {"layout gim", "lossless", "bits per sample", "cut paths", "level", "chunks", "intact"}) {
+        EXPECT_NE(info.out.find(word), std::string::npos) << word;
+    }
+}
+
+TEST_F(Cli, CompareReadsMeshesAndGimFilesOnBothSides) {
+    for (const auto& [reference, test] : {std::pair{mesh_path(), gim_path()}, std::pair{gim_path(), mesh_path()}}) {
+        const Outcome compare = gim({"compare", reference, test, "--samples", "5000"});
+        EXPECT_EQ(compare.status, 0) << compare.err;
+        for (const char* word : {"RMS reference to test", "RMS test to reference", "Hausdorff", "PSNR", "watertight"}) {
+            EXPECT_NE(compare.out.find(word), std::string::npos) << word;
+        }
+    }
+}
+
+TEST_F(Cli, RenderDrawsOneOrThreePanels) {
+    EXPECT_EQ(gim({"render", mesh_path(), folder.file("one.png"), "--size", "64", "--wire", "--flat"}).status, 0);
+    EXPECT_EQ(gim({"render", mesh_path(), folder.file("three.png"), "--gim", gim_path(), "--size", "64"}).status, 0);
+    const std::string three = load_text(folder.file("three.png"));
+    ASSERT_GT(three.size(), 24U);
+    EXPECT_EQ(three.substr(1, 3), "PNG");
+    EXPECT_EQ(static_cast<uint8_t>(three[19]), 3 * 64);  // width, big-endian at offset 16
+}
+
+TEST_F(Cli, DamagedFilesAreReportedWithStatusOne) {
+    const std::string whole = load_text(gim_path());
+    std::string flipped = whole;
+    flipped[whole.size() - 10] = static_cast<char>(flipped[whole.size() - 10] ^ 4);
+    save(folder.file("flipped.gim"), flipped);
+    const Outcome info = gim({"info", folder.file("flipped.gim")});
+    EXPECT_EQ(info.status, 1);
+    EXPECT_NE(info.err.find("1 of "), std::string::npos) << info.err;
+    EXPECT_NE(info.out.find("DAMAGED"), std::string::npos);
+
+    for (const size_t size : {size_t{3}, size_t{30}, whole.size() / 2, whole.size() - 1}) {
+        save(folder.file("cut.gim"), whole.substr(0, size));
+        const Outcome decode = gim({"decode", folder.file("cut.gim"), folder.file("cut.ply")});
+        EXPECT_EQ(decode.status, 1) << size;
+        EXPECT_NE(decode.err.find("cut.gim"), std::string::npos);
+        EXPECT_FALSE(std::filesystem::exists(folder.file("cut.ply")));
+    }
+}
+
+TEST_F(Cli, APrefixDecodesTheCoarseLevels) {
+    const json levels = json::parse(gim({"info", gim_path(), "--json"}).out)["images"][0]["levels"];
+    const json& coarsest = levels.back();
+    save(folder.file("prefix.gim"), load_text(gim_path()).substr(0, coarsest["prefix_bytes"].get<size_t>()));
+    const Outcome decode = gim({"decode", folder.file("prefix.gim"), folder.file("coarse.ply"), "--level",
+                                std::to_string(coarsest["level"].get<int>())});
+    EXPECT_EQ(decode.status, 0) << decode.err;
+}
+
+// ---- what cannot be encoded --------------------------------------------------------------------------------------------
+
+struct Refusal {
+    std::string name, content, word;  // `word` must be in the message
+};
+
+TEST_F(Cli, WhatIsNoMeshEndsWithAMessageAndNothingBehind) {
+    const std::string claim_ply =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 89478485\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string claim_stl(80, ' ');
+    claim_stl += std::string("\x00\x94\x35\x77", 4) + std::string(16, '\0');
+    std::string claim_glb = std::string("glTF\2\0\0\0\0\x94\x35\x77\0\x90\x35\x77JSON", 20) + std::string(80, ' ');
+    std::string claim_gim = load_text(gim_path()).substr(0, 100);
+    const std::vector<Refusal> refusals = {
+        {"empty.ply", "", "the file is empty"},
+        {"empty.gim", "", ""},
+        {"letter.txt", "Dear all,\nno mesh today.\n", "not a mesh that gim can read"},
+        {"letter.obj", "Dear all,\nno mesh today.\n", "not a mesh that gim can read"},
+        {"letter.gim", "Dear all,\nno mesh today.\n", "neither a .gim file"},
+        {"claim.ply", claim_ply, "claims 89478485"},
+        {"claim.off", "OFF\n178956970 1 0\n0 0 0\n", "claims 178956970"},
+        {"claim.stl", claim_stl, "claims 2000000000"},
+        {"claim.obj", "v 0 0 0\nf 1 2 2000000000\n", "vertex 1"},
+        {"claim.glb", claim_glb, "not a mesh that gim can read"},
+        {"claim.gim", claim_gim, "gim"},
+    };
+    for (const Refusal& refusal : refusals) {
+        const std::string input = folder.file(refusal.name);
+        save(input, refusal.content);
+        const std::vector<std::string> before = folder.names();
+        const Outcome run = gim({"encode", input, folder.file("out.gim")});
+        EXPECT_EQ(run.status, 1) << refusal.name << ": " << run.err;
+        EXPECT_NE(run.err.find(input), std::string::npos) << "the message names the file: " << run.err;
+        EXPECT_NE(run.err.find(refusal.word), std::string::npos) << refusal.name << ": " << run.err;
+        EXPECT_EQ(folder.names(), before) << refusal.name;
+    }
+}
+
+TEST_F(Cli, HeadersOfGimFilesThatClaimTooMuchAreRefused) {
+    // Every single byte of header and index set to its largest value: refused, quickly, with a message.
+    const std::string whole = load_text(gim_path());
+    for (size_t i = 0; i < 60; i += 3) {
+        std::string claim = whole.substr(0, 100);
+        claim[i] = '\xff';
+        save(folder.file("claim.gim"), claim);
+        const Outcome run = gim({"decode", folder.file("claim.gim"), folder.file("claim.ply")});
+        EXPECT_EQ(run.status, 1) << i;
+        EXPECT_NE(run.err, "") << i;
+        EXPECT_FALSE(std::filesystem::exists(folder.file("claim.ply")));
+    }
+}
+
+TEST_F(Cli, MeshesThatThisLayoutCannotTakeAreDescribed) {
+    for (const auto& [name, word] : std::vector<std::pair<std::string, std::string>>{{"four-pieces", "component"},
+                                                                                     {"edge-of-three", "non-manifold"},
+                                                                                     {"not-a-number", "finite"},
+                                                                                     {"moebius", ""}}) {
+        const std::string input = folder.file(name + ".obj");
+        save_corpus_mesh(name, input);
+        const std::string output = folder.file("out.gim");
+        save(output, "an older file");
+        const Outcome run = gim({"encode", input, output, "--size", "33", "--node-side", "9"});
+        EXPECT_EQ(run.status, 1) << name;
+        EXPECT_NE(run.err.find(input), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find(word), std::string::npos) << name << ": " << run.err;
+        EXPECT_EQ(load_text(output), "an older file") << name;
+    }
+}
+
+TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
+    save(folder.file("file"), "");
+    for (const std::string& output :
+         {folder.file("no/such/folder/out.gim"), folder.path(), folder.file("file/out.gim")}) {
+        const Outcome run = gim({"encode", mesh_path(), output});
+        EXPECT_EQ(run.status, 1);
+        EXPECT_NE(run.err.find("cannot write"), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find(output), std::string::npos) << run.err;
+    }
+    const Outcome decode = gim({"decode", gim_path(), folder.file("no/out.ply")});
+    EXPECT_EQ(decode.status, 1);
+    EXPECT_NE(decode.err.find("cannot write"), std::string::npos);
+    if (std::filesystem::exists("/dev/full")) {
+        // The results themselves cannot be written.
+        const Outcome full = gim({"encode", mesh_path(), "/dev/full", "--size", "33", "--node-side", "9"});
+        EXPECT_EQ(full.status, 1) << full.err;
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+}
+
+TEST_F(Cli, GimFilesAreNotEncodedAgain) {
+    const Outcome run = gim({"encode", gim_path(), folder.file("twice.gim")});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("already"), std::string::npos) << run.err;
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST_F(Cli, MissingInputsAreNamed) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"encode", "no-such.ply", folder.file("a.gim")},
+          std::vector<std::string>{"decode", "no-such.ply", folder.file("a.ply")},
+          std::vector<std::string>{"info", "no-such.ply"},
+          std::vector<std::string>{"compare", "no-such.ply", mesh_path()},
+          std::vector<std::string>{"compare", mesh_path(), "no-such.ply"},
+          std::vector<std::string>{"render", "no-such.ply", folder.file("a.png")}}) {
+        const Outcome run = gim(arguments);
+        EXPECT_EQ(run.status, 1) << arguments[0];
+        EXPECT_NE(run.err.find("no-such.ply"), std::string::npos) << run.err;
+    }
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST_F(Cli, WrongUsageEndsWithStatusTwo) {
+    const std::string out = folder.file("a.gim");
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{},
+                                               {"no-such-command"},
+                                               {"encode"},
+                                               {"encode", mesh_path()},
+                                               {"encode", mesh_path(), out, "--lossless", "--psnr", "60"},
+                                               {"encode", mesh_path(), out, "--bytes", "1000", "--quality", "60"},
+                                               {"encode", mesh_path(), out, "--size", "256"},
+                                               {"encode", mesh_path(), out, "--size", "-1"},
+                                               {"encode", mesh_path(), out, "--bits", "7"},
+                                               {"encode", mesh_path(), out, "--bits", "21"},
+                                               {"encode", mesh_path(), out, "--psnr", "nan"},
+                                               {"encode", mesh_path(), out, "--bytes", "0"},
+                                               {"encode", mesh_path(), out, "--quality", "101"},
+                                               {"encode", mesh_path(), out, "--layout", "spiral"},
+                                               {"encode", mesh_path(), out, "--charts", "5"},
+                                               {"encode", mesh_path(), out, "--threads", "-1"},
+                                               {"decode", gim_path(), folder.file("a.xyz")},
+                                               {"decode", gim_path(), folder.file("a.ply"), "--level", "-1"},
+                                               {"info"},
+                                               {"compare", mesh_path()},
+                                               {"render", mesh_path(), folder.file("a.png"), "--up", "w"}}) {
+        const Outcome run = gim(arguments);
+        std::string line;
+        for (const std::string& argument : arguments) line.append(" ").append(argument);
+        EXPECT_EQ(run.status, 2) << line << "\n" << run.err;
+        EXPECT_NE(run.err, "") << line;
+    }
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST_F(Cli, HelpAndVersionAreNoErrors) {
+    EXPECT_EQ(gim({"--version"}).status, 0);
+    EXPECT_EQ(gim({"--version"}).out.find("gim "), 0U);
+    EXPECT_EQ(gim({"--help"}).status, 0);
+    const Outcome help = gim({"encode", "--help"});
+    EXPECT_EQ(help.status, 0);
+    for (const char* option :
+         {"--layout", "--size", "--samples", "--charts", "--bits", "--lossless", "--psnr", "--bytes", "--quality",
+          "--normals", "--seed", "--threads", "--json", "--quiet", "--node-side"}) {
+        EXPECT_NE(help.out.find(option), std::string::npos) << option;
+    }
+}
+
+}  // namespace
+}  // namespace gim

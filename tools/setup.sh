@@ -1,0 +1,57 @@
+# Sourced by quickstart.sh, test.sh and lint.sh: installs missing Debian packages, tells progress, finds the tree.
+# Needs only bash, git and apt. Calls apt only when something is missing.
+
+GIM_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+readonly GIM_ROOT
+
+readonly GIM_BUILD_PACKAGES=(
+    g++ cmake ninja-build pkg-config
+    libeigen3-dev libtbb-dev libzstd-dev
+    libcli11-dev nlohmann-json3-dev libopenexr-dev libtinygltf-dev libstb-dev
+    libgtest-dev
+)
+
+say() { printf '\n== %s\n' "$*"; }
+die() {
+    printf 'error: %s\n' "$*" >&2
+    exit 1
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        die "installing packages needs root or sudo; as root, run: apt-get install --no-install-recommends $GIM_MISSING"
+    fi
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+# install_packages NAME...: does nothing when all of them are there.
+install_packages() {
+    local missing=() name
+    command -v dpkg-query >/dev/null || die "this script knows Debian's packages only; install by hand: $*"
+    for name in "$@"; do
+        is_installed "$name" || missing+=("$name")
+    done
+    [ ${#missing[@]} -eq 0 ] && return 0
+    GIM_MISSING="${missing[*]}"
+    say "Installing ${#missing[@]} Debian packages: $GIM_MISSING"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update ||
+        die "'apt-get update' failed (is the network up?); then run this script again"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "${missing[@]}" ||
+        die "apt-get could not install: $GIM_MISSING (this needs Debian 12 or newer); install them and run this script again"
+}
+
+# configure_and_build PRESET [cmake options]: in build/PRESET, with ccache where there is one.
+configure_and_build() {
+    local preset=$1
+    shift
+    local launcher=()
+    command -v ccache >/dev/null && launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    say "Building the preset '$preset'"
+    (cd "$GIM_ROOT" && cmake --preset "$preset" --log-level=WARNING "${launcher[@]}" "$@" &&
+        cmake --build --preset "$preset") || die "building the preset '$preset' failed"
+}
