@@ -32,6 +32,8 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
     report.cut_length = chart.cut_length;
     report.stretch_efficiency = chart.stretch_efficiency;
     report.flipped_triangles = chart.flipped_triangles;
+    report.folds = chart.folds;
+    report.folds_before_fit = chart.folds_before_fit;
 
     return finish_encoding({&chart.image, 1}, std::move(cleaned.mesh), options, clock, std::move(encoded));
 }

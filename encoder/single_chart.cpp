@@ -2,6 +2,8 @@
 
 #include "encoder/augment_cut.h"
 #include "encoder/boundary_map.h"
+#include "encoder/density.h"
+#include "encoder/fit.h"
 #include "encoder/parametrize.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
@@ -14,6 +16,12 @@ namespace {
 
 // Faces larger than this part of the surface are split before cutting: about 8 samples of a 257 x 257 image.
 constexpr double kLargestFace = 1.0 / 8000;
+
+// A loose fit multiplies the tangential detail: only what is coded without loss can afford it.
+bool is_loose(const EncodeOptions& options) {
+    if (options.fit != FitStrength::kAuto) return options.fit == FitStrength::kLoose;
+    return options.rate.kind == RateTarget::Kind::kLossless;
+}
 
 }  // namespace
 
@@ -35,12 +43,31 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
 
     clock.begin(Stage::kParametrize);
     const Mesh& disk = boundary.opened.mesh;
-    GIM_TRY(uv, parametrize(disk, boundary.sides, boundary_uv(boundary, options.side), {}, clock.progress()));
+    const std::vector<Vec2> border = boundary_uv(boundary, options.side);
+    GIM_TRY(even, parametrize(disk, boundary.sides, border, {}, clock.progress()));
+    std::vector<Vec2> uv = std::move(even);
     chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
+    if (options.density) {
+        ParametrizeOptions weighted;
+        weighted.importance = importance_from_error(disk, uv, sample_surface(boundary, uv, options.side), {});
+        GIM_TRY(adapted, parametrize(disk, boundary.sides, border, weighted, clock.progress()));
+        uv = std::move(adapted);
+    }
     chart.flipped_triangles = count_flipped(disk, uv);
 
     clock.begin(Stage::kSample);
     chart.image = sample_surface(boundary, uv, options.side);
+    if (options.fit == FitStrength::kNone) return chart;
+
+    clock.begin(Stage::kFit);
+    FitOptions fit_options;
+    fit_options.strength = is_loose(options) ? FitOptions::Strength::kLoose : FitOptions::Strength::kStiff;
+    fit_options.seed = options.seed;
+    fit_options.threads = options.threads;
+    GIM_TRY(fitted, fit(chart.image, mesh, fit_options, clock.progress()));
+    chart.image = std::move(fitted.image);
+    chart.folds = fitted.after.folds;
+    chart.folds_before_fit = fitted.before.folds;
     return chart;
 }
 

@@ -99,6 +99,14 @@ struct RateTarget {
     double value = 75;
 };
 
+// How far the samples may move to bring the image's surface nearer to the input.
+enum class FitStrength {
+    kAuto,   // loose for lossless coding, stiff for the rest
+    kNone,   // plain samples
+    kStiff,  // samples hardly slide along the surface, so the bytes hardly grow; about +4 dB
+    kLoose,  // samples find the surface's creases; about +9 dB, and much more tangential detail
+};
+
 struct EncodeOptions {
     Layout layout = Layout::kGim;
     uint32_t side = 257;      // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory
@@ -106,6 +114,8 @@ struct EncodeOptions {
                               // made finer by the encoder where the cut has too many nodes for it
     uint32_t bits = 12;       // quantizer: bits per coordinate of the bounding box, 8..20
     RateTarget rate;
+    FitStrength fit = FitStrength::kAuto;
+    bool density = true;  // more samples where a first sampling leaves more error; false: spread evenly
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the bytes do not depend on it
 };
@@ -123,6 +133,7 @@ struct EncodeReport {
     uint32_t side = 0, node_side = 0, cut_paths = 0;
     double cut_length = 0;                                 // object units
     double stretch_efficiency = 0;                         // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
+    uint64_t folds = 0, folds_before_fit = 0;              // image faces that look away from the input's surface
     uint64_t flipped_triangles = 0;                        // in the parametrization; always 0 in a successful run
     double bits_per_sample = 0, bits_per_vertex = 0;       // file bits over samples / input vertices
     uint64_t file_bytes = 0, sideband_bytes = 0;
