@@ -1,0 +1,201 @@
+// The whole way: mesh -> .gim -> mesh.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "corpus/corpus.h"
+#include "encoder/decode_surface.h"
+#include "gim/decoder.h"
+#include "gim/encoder.h"
+#include "tests/models.h"
+
+namespace gim {
+namespace {
+
+EncodeOptions small_options() {
+    EncodeOptions options;
+    options.side = 65;
+    options.rate.kind = RateTarget::Kind::kLossless;
+    options.fit = FitStrength::kNone;
+    options.density = false;
+    return options;
+}
+
+TriangleMesh as_input(const Mesh& mesh) {
+    TriangleMesh result;
+    for (const Vec3& p : mesh.positions) result.positions.push_back({p.x(), p.y(), p.z()});
+    result.triangles = mesh.triangles;
+    return result;
+}
+
+// The decoded surface has the input's topology at every level that the file says it can close.
+void expect_topology_at_every_level(const Encoded& encoded, const std::string& name) {
+    const auto coarsest = coarsest_level(encoded.bytes);
+    ASSERT_TRUE(coarsest.ok()) << name;
+    for (uint32_t level = 0; level <= coarsest.value(); ++level) {
+        const auto decoded = decode_surface(encoded.bytes, level);
+        ASSERT_TRUE(decoded.ok()) << name << " level " << level;
+        const TopologySummary topology = summarize_topology(as_input(decoded.value()));
+        EXPECT_TRUE(topology.manifold) << name << " level " << level;
+        EXPECT_EQ(topology.components, encoded.report.topology.components) << name << " level " << level;
+        EXPECT_EQ(topology.boundary_loops, encoded.report.topology.boundary_loops) << name << " level " << level;
+        EXPECT_EQ(topology.genus, encoded.report.topology.genus) << name << " level " << level;
+    }
+}
+
+TEST(Encode, EverySurfaceOfTheCorpusComesBackWithItsTopology) {
+    for (const corpus::CorpusEntry& entry : corpus::corpus().connected()) {
+        const TriangleMesh mesh = entry.mesh();
+        if (mesh.triangles.size() > 6000) continue;  // the stage tests take the large ones
+        const auto encoded = encode(mesh, small_options());
+        ASSERT_TRUE(encoded.ok()) << entry.name << ": " << encoded.error().message;
+        EXPECT_EQ(encoded.value().report.flipped_triangles, 0u) << entry.name;
+        EXPECT_GT(encoded.value().report.error.psnr, 35) << entry.name;
+        expect_topology_at_every_level(encoded.value(), entry.name);
+    }
+}
+
+TEST(Encode, LossyFilesKeepTheTopologyToo) {
+    EncodeOptions options = small_options();
+    options.rate = {RateTarget::Kind::kQuality, 30};
+    for (const char* name : {"torus-576", "limbs", "annulus-512"}) {
+        const corpus::CorpusEntry entry = corpus::corpus().named(name);
+        ASSERT_EQ(entry.name, name);
+        const auto encoded = encode(entry.mesh(), options);
+        ASSERT_TRUE(encoded.ok()) << name;
+        expect_topology_at_every_level(encoded.value(), name);
+    }
+}
+
+TEST(Encode, PsnrTargetIsMetAndNotByMuch) {
+    EncodeOptions options = small_options();
+    const TriangleMesh mesh = corpus::torus(60, 30, 1, 0.4);
+    for (const double target : {40.0, 50.0}) {
+        options.rate = {RateTarget::Kind::kPsnr, target};
+        const auto encoded = encode(mesh, options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_GE(encoded.value().report.error.psnr, target);
+        EXPECT_LE(encoded.value().report.error.psnr, target + 0.3);
+    }
+}
+
+TEST(Encode, PsnrOutOfReachIsAnErrorThatNamesTheBest) {
+    EncodeOptions options = small_options();
+    options.side = 17;
+    options.rate = {RateTarget::Kind::kPsnr, 120};
+    const auto encoded = encode(corpus::torus(60, 30, 1, 0.4), options);
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_NE(encoded.error().message.find("out of reach"), std::string::npos);
+}
+
+TEST(Encode, ByteBudgetIsKeptAndUsed) {
+    EncodeOptions options = small_options();
+    for (const double budget : {800.0, 2000.0}) {
+        options.rate = {RateTarget::Kind::kBytes, budget};
+        const auto encoded = encode(corpus::torus(60, 30, 1, 0.4), options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_LE(static_cast<double>(encoded.value().bytes.size()), budget);
+        EXPECT_GE(static_cast<double>(encoded.value().bytes.size()), 0.98 * budget);
+    }
+    options.rate = {RateTarget::Kind::kBytes, 20};
+    EXPECT_FALSE(encode(corpus::torus(60, 30, 1, 0.4), options).ok());
+}
+
+TEST(Encode, SameBytesAtAnyThreadCount) {
+    EncodeOptions options = small_options();
+    options.fit = FitStrength::kStiff;
+    options.density = true;
+    const TriangleMesh mesh = corpus::limbed_blob(24);
+    options.threads = 1;
+    const auto one = encode(mesh, options);
+    options.threads = 2;
+    const auto two = encode(mesh, options);
+    ASSERT_TRUE(one.ok()) << one.error().message;
+    ASSERT_TRUE(two.ok()) << two.error().message;
+    EXPECT_EQ(one.value().bytes, two.value().bytes);
+}
+
+TEST(Encode, LosslessSamplesAreWithinHalfAStep) {
+    // Twice the same samples with many and with few bits: no coordinate may differ by more than the steps allow.
+    EncodeOptions options = small_options();
+    options.bits = 8;
+    const TriangleMesh mesh = corpus::sphere(12);
+    const auto coarse = encode(mesh, options);
+    options.bits = 20;
+    const auto fine = encode(mesh, options);
+    ASSERT_TRUE(coarse.ok() && fine.ok());
+    const Mesh a = decode_surface(coarse.value().bytes, 0).value(), b = decode_surface(fine.value().bytes, 0).value();
+    ASSERT_EQ(a.positions.size(), b.positions.size());
+    gim_info info_a, info_b;
+    ASSERT_EQ(gim_read_info(coarse.value().bytes.data(), coarse.value().bytes.size(), nullptr, &info_a), GIM_OK);
+    ASSERT_EQ(gim_read_info(fine.value().bytes.data(), fine.value().bytes.size(), nullptr, &info_b), GIM_OK);
+    const double allowed = 0.5 * (double(info_a.step) + double(info_b.step)) + 1e-6;
+    for (size_t v = 0; v < a.positions.size(); ++v)
+        EXPECT_LE((a.positions[v] - b.positions[v]).cwiseAbs().maxCoeff(), allowed);
+}
+
+TEST(Encode, BrokenMeshesAreRefusedWithWords) {
+    for (const corpus::CorpusEntry& entry : corpus::corpus().broken()) {
+        const auto encoded = encode(entry.mesh(), small_options());
+        if (encoded.ok()) continue;  // repaired by cleaning: duplicates, orientation
+        EXPECT_GT(encoded.error().message.size(), 20u) << entry.name;
+    }
+    const auto nothing = encode({}, small_options());
+    EXPECT_FALSE(nothing.ok());
+    TriangleMesh nan = corpus::sphere(4);
+    nan.positions[7][1] = std::numeric_limits<double>::quiet_NaN();
+    const auto refused = encode(nan, small_options());
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("7"), std::string::npos) << "names the vertex";
+}
+
+TEST(Encode, WrongOptionsAreRefused) {
+    const TriangleMesh mesh = corpus::sphere(4);
+    const auto refused = [&](const auto& change) {
+        EncodeOptions options = small_options();
+        change(options);
+        return !encode(mesh, options).ok();
+    };
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.side = 256; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.node_side = 129; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 7; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 21; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.rate = {RateTarget::Kind::kQuality, 101}; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.rate = {RateTarget::Kind::kPsnr, std::nan("")}; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.rate = {RateTarget::Kind::kBytes, 0}; }));
+}
+
+TEST(Encode, FitBringsTheSurfaceNearer) {
+    EncodeOptions options = small_options();
+    const TriangleMesh mesh = corpus::limbed_blob(24);
+    const auto plain = encode(mesh, options);
+    options.fit = FitStrength::kLoose;
+    const auto fitted = encode(mesh, options);
+    ASSERT_TRUE(plain.ok() && fitted.ok());
+    EXPECT_GT(fitted.value().report.error.psnr, plain.value().report.error.psnr + 1);
+    EXPECT_LE(fitted.value().report.folds, fitted.value().report.folds_before_fit);
+    expect_topology_at_every_level(fitted.value(), "fitted");
+}
+
+TEST(EncodeModels, SmallModelsKeepTheirTopologyAtEveryLevel) {
+    const struct {
+        const char* name;
+        double genus;
+        uint64_t loops;
+    } models[] = {{"eight", 2, 0}, {"block", 3, 0}, {"mask-holes", 0, 7}, {"rocker-arm", 1, 0}};
+    for (const auto& model : models) {
+        const auto mesh = read_model(std::string(GIM_MODELS_DIR) + "/" + model.name + ".ply");
+        if (!mesh) GTEST_SKIP() << "the development models are not there";
+        EncodeOptions options = small_options();
+        options.side = 129;
+        const auto encoded = encode(*mesh, options);
+        ASSERT_TRUE(encoded.ok()) << model.name << ": " << encoded.error().message;
+        EXPECT_EQ(encoded.value().report.topology.genus, model.genus) << model.name;
+        EXPECT_EQ(encoded.value().report.topology.boundary_loops, model.loops) << model.name;
+        expect_topology_at_every_level(encoded.value(), model.name);
+    }
+}
+
+}  // namespace
+}  // namespace gim
