@@ -78,7 +78,7 @@ class PyramidDecoder {
 
     void decode_base(BandCoder<RangeDecoder>& coder) {
         const Band base = {ws_.bands[slot(0)], 2, 2};
-        ok_ = coder.code(base, nullptr);
+        ok_ = coder.code_base(base);
         Sample* values = image(0);
         const float step = header_.coding == Coding::kLossy ? low_band_step(header_.quantizer, exponent_) : 0;
         const int32_t middle = 1 << (header_.bits - 1);
@@ -97,9 +97,7 @@ class PyramidDecoder {
         LevelBands parents;
         const bool has_parents = exponent > 1;
         if (has_parents) parents = bands_in(ws_.bands[slot(exponent - 1)], h / 2);
-        ok_ = coder.code(bands.horizontal, has_parents ? &parents.horizontal : nullptr) &&
-              coder.code(bands.vertical, has_parents ? &parents.vertical : nullptr) &&
-              coder.code(bands.diagonal, has_parents ? &parents.diagonal : nullptr);
+        ok_ = coder.code_level(bands, has_parents ? &parents : nullptr);
         if (!ok_) return;
         BandSteps steps;
         if (header_.coding == Coding::kLossy) {
@@ -162,8 +160,8 @@ ImageWorkspace lay_out(uint32_t side, Arena* arena) {
     const size_t ring = ring_length(side);
     ImageWorkspace ws;
     ws.models = arena->take<BandModels>(1);
-    ws.band_work.above = arena->take<uint32_t>(BandWork::row_size(half));
-    ws.band_work.current = arena->take<uint32_t>(BandWork::row_size(half));
+    ws.band_work.above = arena->take<int32_t>(BandWork::row_size(half));
+    ws.band_work.current = arena->take<int32_t>(BandWork::row_size(half));
     ws.band_work.expected = arena->take<uint32_t>(BandWork::row_size(half));
     ws.band_work.full_above = arena->take<uint8_t>(BandWork::block_size(half));
     ws.bands[0] = arena->take<int32_t>(std::max<size_t>(band_count(side), 12));

@@ -14,12 +14,6 @@ struct BandSteps {
     float edge = 1, diagonal = 1;
 };
 
-struct LevelBands {
-    Band horizontal;  // (h+1) x h
-    Band vertical;    // h x (h+1)
-    Band diagonal;    // h x h
-};
-
 // Numbers (of Sample's size) that synthesize needs as work space.
 constexpr size_t synthesis_work_size(uint32_t side) { return (size_t{side} + 3) * 3; }
 

@@ -35,16 +35,16 @@ class BitModel {
     static constexpr std::array<Rate, kOld + 1> kRates = [] {
         std::array<Rate, kOld + 1> rates{};
         for (uint8_t age = 0; age <= kOld; ++age) {
-            uint8_t shift = 1;  // about log2(age + 1.5)
-            while ((2 * age + 3) >> (shift + 1) != 0) ++shift;
-            rates[age] = {std::min<uint8_t>(shift, 5), std::min<uint8_t>(shift, 7),
+            uint8_t shift = 1;  // the rounded down log2 of age + 2
+            while ((2 * age + 4) >> (shift + 1) != 0) ++shift;
+            rates[age] = {std::min<uint8_t>(shift, 4), std::min<uint8_t>(shift, 7),
                           static_cast<uint8_t>(std::min<int>(age + 1, kOld))};
         }
         return rates;
     }();
 
     uint16_t quick_ = 32768, slow_ = 32768;
-    uint8_t age_ = 0;
+    uint16_t age_ = 0;  // not a byte: stores of bytes would make the compiler reload the coder's state
 };
 
 }  // namespace gim

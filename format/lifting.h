@@ -94,11 +94,12 @@ inline float band_step(float quantizer, uint32_t depth, Orientation orientation)
     return quantizer / (orientation == Orientation::kDiagonal ? norms.diagonal : norms.edge);
 }
 
-// The value that a quantized coefficient stands for lies this part of a step nearer to zero than the bin's middle.
+// The encoder's dead zone makes a bin reach further out than in: a quantized coefficient stands for a value this part
+// of a step beyond its magnitude.
 inline constexpr float kReconstructionShift = 0.0625f;
 
 inline float dequantize(int32_t q, float step) {
-    const float shift = q > 0 ? -kReconstructionShift : q < 0 ? kReconstructionShift : 0.0f;
+    const float shift = q > 0 ? kReconstructionShift : q < 0 ? -kReconstructionShift : 0.0f;
     return (static_cast<float>(q) + shift) * step;
 }
 

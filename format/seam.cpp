@@ -56,11 +56,11 @@ GridPoint cell_at_edge(uint32_t side, uint32_t k) {
 }  // namespace
 
 Status build_seam_table(uint32_t node_side, uint32_t start, std::span<const CutPath> paths, SeamTable* table) {
+    *table = SeamTable();
+    if (paths.empty()) return Status::kOk;
     if (!is_grid_side(node_side) || paths.size() > kMaxCutPaths) return Status::kMalformed;
     table->node_side = node_side;
     table->path_count = static_cast<uint32_t>(paths.size());
-    table->node_class_count = 0;
-    if (paths.empty()) return start == 0 ? Status::kOk : Status::kMalformed;
 
     // Lengths fill the ring exactly.
     const uint32_t ring = ring_length(node_side);

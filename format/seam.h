@@ -36,7 +36,8 @@ struct SeamTable {
     uint32_t length(uint32_t path) const { return first[path + 1] - first[path]; }
 };
 
-// kMalformed unless node_side is 2^j+1, the lengths fill the ring, mates are mutual, distinct and equally long.
+// No paths: an open square, whatever the other arguments. kMalformed unless node_side is 2^j+1, the lengths fill the
+// ring, mates are mutual, distinct and equally long.
 Status build_seam_table(uint32_t node_side, uint32_t start, std::span<const CutPath> paths, SeamTable* table);
 inline Status build_seam_table(const Sideband& sideband, SeamTable* table) {
     return build_seam_table(sideband.node_side, sideband.start, sideband.paths, table);
