@@ -13,10 +13,12 @@ class Refiner {
   public:
     explicit Refiner(Mesh mesh) : mesh_(std::move(mesh)), twin_(build_topology(mesh_).twin) {}
 
-    Mesh run(double largest) {
+    // Splits faces for which too_large(mesh, face, its longest half-edge).
+    template <class TooLarge>
+    Mesh run(const TooLarge& too_large) {
         for (uint32_t f = 0; f < mesh_.triangles.size();
              ++f) {  // grows as faces are split: the new ones are visited too
-            while (face_area(mesh_, f) > largest) split_longest(f);
+            while (too_large(mesh_, f, longest_edge(f))) split_longest(f);
         }
         return std::move(mesh_);
     }
@@ -86,7 +88,15 @@ class Refiner {
 
 }  // namespace
 
-Mesh refine_large_faces(Mesh mesh, double largest) { return Refiner(std::move(mesh)).run(largest); }
+Mesh refine_large_faces(Mesh mesh, double largest) {
+    return Refiner(std::move(mesh)).run([&](const Mesh& m, uint32_t f, uint32_t) { return face_area(m, f) > largest; });
+}
+
+Mesh refine_long_edges(Mesh mesh, double longest) {
+    return Refiner(std::move(mesh)).run([&](const Mesh& m, uint32_t, uint32_t h) {
+        return (m.positions[to(m, h)] - m.positions[from(m, h)]).norm() > longest;
+    });
+}
 
 double surface_area(const Mesh& mesh) {
     double area = 0;

@@ -14,6 +14,10 @@ namespace gim {
 // largest.
 Mesh refine_large_faces(Mesh mesh, double largest);
 
+// The same until no edge is longer than `longest`: needles too, which an area does not tell. Splits about sum over faces
+// of (longest edge / `longest`).
+Mesh refine_long_edges(Mesh mesh, double longest);
+
 // Total area of the surface.
 double surface_area(const Mesh& mesh);
 

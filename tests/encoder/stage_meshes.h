@@ -27,6 +27,16 @@ inline std::vector<NamedMesh> connected_meshes() {
     return meshes;
 }
 
+// Every valid mesh of the corpus, those of several components too.
+inline std::vector<NamedMesh> surfaces() {
+    std::vector<NamedMesh> meshes;
+    for (const corpus::CorpusEntry& entry : corpus::corpus().valid()) {
+        auto cleaned = clean(entry.mesh(), {.require_connected = false});
+        meshes.push_back({entry.name, entry.genus, entry.boundary_loops, std::move(cleaned.value().mesh)});
+    }
+    return meshes;
+}
+
 // Euler characteristic V - E + F over referenced vertices.
 inline int64_t euler_characteristic(const Mesh& mesh) {
     const Topology topology = build_topology(mesh);
