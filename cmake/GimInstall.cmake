@@ -1,1 +1,65 @@
-# install rules live here; written with the exported package
+# Install rules, the exported package (find_package(gim)) and gim-decoder.pc.
+#
+# Two components: `decoder` has no dependency beyond what libgim_decoder links itself; `encoder` and the program come along
+# only where they are built. `cmake --install build --component decoder` installs what an engine embeds and nothing else.
+option(GIM_INSTALL "Install rules for gim" ${PROJECT_IS_TOP_LEVEL})
+if(NOT GIM_INSTALL)
+    return()
+endif()
+include(CMakePackageConfigHelpers)
+set(gim_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gim)
+
+# What the decoder's archive asks of zstd decides what its users need.
+get_target_property(gim_decoder_links gim_decoder LINK_LIBRARIES)
+if(gim_decoder_links MATCHES "zstd")
+    set(gim_decoder_needs_zstd ON)
+    set(gim_pc_requires_private libzstd)
+else()
+    set(gim_decoder_needs_zstd OFF)
+    set(gim_pc_requires_private "")
+endif()
+
+# ---- decoder ---------------------------------------------------------------------------------------------------------
+
+install(TARGETS gim_format gim_decoder EXPORT gim_decoder_targets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT decoder)
+install(FILES ${PROJECT_SOURCE_DIR}/decoder/include/gim/decoder.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gim COMPONENT decoder)
+install(EXPORT gim_decoder_targets NAMESPACE gim:: FILE gim-decoder-targets.cmake
+        DESTINATION ${gim_package_dir} COMPONENT decoder)
+
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gim-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/gim-config.cmake
+                              INSTALL_DESTINATION ${gim_package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/gim-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gim-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/gim-config-version.cmake
+        DESTINATION ${gim_package_dir} COMPONENT decoder)
+
+# The archives are C++ inside, and a C program has to name its runtime.
+set(gim_pc_runtime "")
+foreach(library IN LISTS CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+    if(library MATCHES "^(stdc\\+\\+|c\\+\\+|m)$")
+        string(APPEND gim_pc_runtime " -l${library}")
+    endif()
+endforeach()
+file(RELATIVE_PATH gim_pc_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" gim_pc_prefix "${gim_pc_prefix}")
+configure_file(${CMAKE_CURRENT_LIST_DIR}/gim-decoder.pc.in ${CMAKE_CURRENT_BINARY_DIR}/gim-decoder.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gim-decoder.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT decoder)
+
+# ---- encoder and program ---------------------------------------------------------------------------------------------
+
+if(TARGET gim_encoder)
+    install(TARGETS gim_encoder EXPORT gim_encoder_targets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT encoder)
+    install(FILES ${PROJECT_SOURCE_DIR}/encoder/include/gim/encoder.h
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gim COMPONENT encoder)
+    install(EXPORT gim_encoder_targets NAMESPACE gim:: FILE gim-encoder-targets.cmake
+            DESTINATION ${gim_package_dir} COMPONENT encoder)
+endif()
+if(TARGET gim)
+    get_target_property(gim_is_left_out gim EXCLUDE_FROM_ALL)
+    if(NOT gim_is_left_out)
+        install(TARGETS gim RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+    endif()
+endif()

@@ -1,0 +1,384 @@
+// Writes the conformance vectors: make_vectors FOLDER fills FOLDER/valid and FOLDER/invalid.
+// Not part of any test: the files are committed, and a change of theirs is a change of the format.
+// Positions are integers made here, so that the files do not depend on a machine's floating point.
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+
+#include "encoder/write_gim.h"
+#include "format/checksum.h"
+#include "format/seam.h"
+#include "format/sideband_code.h"
+#include "tests/decoder/vectors.h"
+#include "tests/format/random_sideband.h"
+
+namespace gim {
+namespace {
+
+using namespace gim::test;
+namespace fs = std::filesystem;
+using Bytes = std::vector<uint8_t>;
+
+// ---- sidebands -------------------------------------------------------------------------------------------------------
+
+Sideband open_square() { return {2, 0, {}}; }
+// Every side is folded at its middle: genus 0, the corners are one point.
+Sideband folded_sides() { return {3, 0, {{1, 1}, {0, 1}, {3, 1}, {2, 1}, {5, 1}, {4, 1}, {7, 1}, {6, 1}}}; }
+// Opposite sides are one: genus 1.
+Sideband torus() { return {3, 0, {{2, 2}, {3, 2}, {0, 2}, {1, 2}}}; }
+// Two opposite sides are one, the others stay: a tube.
+Sideband tube() { return {3, 0, {{2, 2}, {kNoMate, 2}, {0, 2}, {kNoMate, 2}}}; }
+
+// ---- images ----------------------------------------------------------------------------------------------------------
+
+// A smooth hill of integers, noise of 0 .. noise-1 on it, and both sides of every seam equal.
+GeometryImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t seed) {
+    GeometryImage image;
+    image.side = side;
+    image.sideband = std::move(sideband);
+    Random random(seed);
+    const uint32_t last = side - 1, cell = 1024 / last;
+    for (uint32_t r = 0; r < side; ++r) {
+        for (uint32_t c = 0; c < side; ++c) {
+            const uint32_t u = c * cell, v = r * cell;
+            const uint32_t height = u * (1024 - u) / 64 * (v * (1024 - v) / 64) / 16384;
+            const auto with_noise = [&](uint32_t x) {
+                return static_cast<double>(x + (noise ? random.below(noise) : 0));
+            };
+            const double x = with_noise(u * 3), y = with_noise(v * 2 + u * u / 2048), z = with_noise(height);
+            image.positions.emplace_back(x, y, z);
+        }
+    }
+    SeamTable seams;
+    if (build_seam_table(image.sideband, &seams) != Status::kOk) std::abort();
+    std::vector<uint32_t> class_of(ring_length(side)), first(ring_length(side), UINT32_MAX);
+    ring_classes(seams, side, class_of);
+    for (uint32_t k = 0; k < class_of.size(); ++k) {
+        if (first[class_of[k]] == UINT32_MAX) first[class_of[k]] = k;
+        const GridPoint to = ring_point(side, k), from = ring_point(side, first[class_of[k]]);
+        image.at(to.row, to.column) = image.at(from.row, from.column);
+    }
+    return image;
+}
+
+CodingParameters lossless(uint32_t bits, uint32_t base_side) {
+    CodingParameters p;
+    p.bits = bits;
+    p.base_side = base_side;
+    return p;
+}
+CodingParameters lossy(uint32_t bits, uint32_t base_side, double quantizer) {
+    CodingParameters p = lossless(bits, base_side);
+    p.lossless = false;
+    p.quantizer = quantizer;
+    return p;
+}
+
+Bytes encode(const std::vector<GeometryImage>& images, const CodingParameters& parameters) {
+    auto file = write_gim(images, parameters);
+    if (!file.ok()) {
+        std::fprintf(stderr, "side %u: %s\n", images[0].side, file.error().message.c_str());
+        std::abort();
+    }
+    return file.value();
+}
+
+// ---- files in parts --------------------------------------------------------------------------------------------------
+
+struct Parts {
+    Header header;
+    Bytes exponents;
+    std::vector<Chunk> chunks;
+    std::vector<Bytes> payloads;
+};
+
+Parts take_apart(const Bytes& file) {
+    Parts parts;
+    if (parse_header(file, {}, &parts.header) != Status::kOk) std::abort();
+    parts.exponents.assign(parts.header.side_exponents.begin(), parts.header.side_exponents.end());
+    ChunkWalk walk(parts.header);
+    Chunk chunk;
+    for (uint64_t offset = 0; walk.next(&chunk, &offset);) {
+        const auto begin = file.begin() + static_cast<ptrdiff_t>(offset);
+        parts.chunks.push_back(chunk);
+        parts.payloads.emplace_back(begin, begin + static_cast<ptrdiff_t>(chunk.size));
+    }
+    return parts;
+}
+
+// Sizes and checksums are made right again.
+Bytes put_together(Parts parts) {
+    parts.header.side_exponents = parts.exponents;
+    for (size_t i = 0; i < parts.chunks.size(); ++i) {
+        parts.chunks[i].size = parts.payloads[i].size();
+        parts.chunks[i].crc = crc16(parts.payloads[i]);
+    }
+    Bytes file = serialize_header(parts.header, parts.chunks);
+    for (const Bytes& p : parts.payloads) file.insert(file.end(), p.begin(), p.end());
+    return file;
+}
+
+void insert_chunk(Parts* parts, size_t at, uint32_t type, bool optional, Bytes payload) {
+    Chunk chunk;
+    chunk.type = static_cast<ChunkType>(type);
+    chunk.optional = optional;
+    parts->chunks.insert(parts->chunks.begin() + static_cast<ptrdiff_t>(at), chunk);
+    parts->payloads.insert(parts->payloads.begin() + static_cast<ptrdiff_t>(at), std::move(payload));
+}
+
+void remove_chunk(Parts* parts, size_t at) {
+    parts->chunks.erase(parts->chunks.begin() + static_cast<ptrdiff_t>(at));
+    parts->payloads.erase(parts->payloads.begin() + static_cast<ptrdiff_t>(at));
+}
+
+Bytes with_parts(const Bytes& file, const std::function<void(Parts&)>& change) {
+    Parts parts = take_apart(file);
+    change(parts);
+    return put_together(std::move(parts));
+}
+
+// Bytes of header and index changed by hand, then a right checksum; index_size as before.
+Bytes with_index_bytes(Bytes file, const std::function<void(Bytes&)>& change) {
+    const uint32_t size = take_apart(file).header.index_size;
+    change(file);
+    const uint32_t crc = crc32(std::span(file).first(size - 4));
+    for (uint32_t i = 0; i < 4; ++i) file[size - 4 + i] = static_cast<uint8_t>(crc >> 8 * i);
+    return file;
+}
+
+// ---- output ----------------------------------------------------------------------------------------------------------
+
+void write_bytes(const fs::path& path, const Bytes& bytes) {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+class Writer {
+  public:
+    explicit Writer(fs::path folder) : folder_(std::move(folder)) {}
+
+    void valid(const std::string& name, const Bytes& file) {
+        const Decoded decoded = decode_all(file);
+        report(name, file, decoded.status == GIM_OK, decoded.status);
+        write_bytes(folder_ / "valid" / (name + ".gim"), file);
+        write_bytes(folder_ / "valid" / (name + ".f32"), to_bytes(decoded.samples));
+        write_bytes(folder_ / "valid" / (name + ".tri"), to_bytes(decoded.triangles));
+    }
+    void invalid(const std::string& name, const Bytes& file) {
+        const gim_status status = decode_all(file).status;
+        report(name, file, status == status_of_name(name), status);
+        write_bytes(folder_ / "invalid" / (name + ".gim"), file);
+    }
+    bool fine() const { return fine_; }
+
+  private:
+    void report(const std::string& name, const Bytes& file, bool as_named, gim_status status) {
+        std::printf("%-50s %6zu bytes%s\n", name.c_str(), file.size(), as_named ? "" : "  NOT AS NAMED");
+        if (!as_named) std::printf("    status %d: %s\n", status, gim_status_text(status));
+        fine_ = fine_ && as_named;
+    }
+
+    fs::path folder_;
+    bool fine_ = true;
+};
+
+void write_valid(Writer& out) {
+    out.valid("open-5-lossless", encode({hill(5, open_square(), 0, 1)}, lossless(8, 3)));
+    out.valid("open-3-lossy", encode({hill(3, open_square(), 0, 1)}, lossy(12, 3, 4)));
+    out.valid("sphere-17-lossless", encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5)));
+    out.valid("sphere-33-lossy", encode({hill(33, folded_sides(), 5, 3)}, lossy(12, 9, 4)));
+    out.valid("torus-17-lossless", encode({hill(17, torus(), 40, 4)}, lossless(12, 3)));
+    out.valid("torus-33-lossy", encode({hill(33, torus(), 3, 5)}, lossy(14, 5, 20)));
+    // No byte at all is a stream, of empty blocks.
+    out.valid("empty-finest-level", with_parts(encode({hill(17, torus(), 40, 4)}, lossless(12, 3)),
+                                               [](Parts& p) { p.payloads.back().clear(); }));
+    out.valid("tube-9-lossless", encode({hill(9, tube(), 3, 6)}, lossless(10, 9)));
+    out.valid("tube-33-lossy-coarse", encode({hill(33, tube(), 0, 7)}, lossy(12, 9, 500)));
+    out.valid("noise-17-lossless-20-bits", encode({hill(17, open_square(), 1u << 22, 8)}, lossless(20, 5)));
+    out.valid("two-images-lossless",
+              encode({hill(5, open_square(), 7, 9), hill(17, folded_sides(), 7, 10)}, lossless(12, 5)));
+    out.valid("two-images-lossy", encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6)));
+    Random random(13);
+    for (uint32_t genus = 2; genus <= 3; ++genus) {
+        Sideband s = random_sideband(random, 17, 2 * genus, 1, false);
+        s.start = 3 + genus;
+        out.valid("schema-33-lossy-" + std::to_string(genus), encode({hill(33, s, 6, 14)}, lossy(12, 17, 5)));
+    }
+
+    CodingParameters text = lossless(8, 3);
+    text.text = "a short text";
+    out.valid("text-plain", encode({hill(5, open_square(), 0, 1)}, text));
+    text.text.clear();
+    for (int i = 0; i < 20; ++i) text.text += "the same words again and again; ";
+    out.valid("text-zstd", encode({hill(5, open_square(), 0, 1)}, text));
+    out.valid("unknown-optional-chunks",
+              with_parts(encode({hill(5, open_square(), 0, 1)}, lossless(8, 3)), [](Parts& p) {
+                  insert_chunk(&p, 0, 77, true, {1, 2, 3});
+                  insert_chunk(&p, 2, (1u << 30) - 1, true, {});
+                  p.chunks[0].zstd = true;  // whatever is in it, it is skipped
+                  p.chunks[0].raw_size = 1u << 20;
+              }));
+}
+
+void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {
+    const auto changed = [&](const Bytes& from, size_t at, uint8_t value) {
+        Bytes b = from;
+        b[at] = value;
+        return b;
+    };
+    out.invalid("not-gim.magic", changed(plain, 3, 'F'));
+    out.invalid("not-gim.line-ends", [&] {
+        Bytes b = plain;
+        b.erase(b.begin() + 4);
+        return b;
+    }());
+    out.invalid("not-gim.raw-floats", to_bytes(std::vector<float>(75, 1.0f)));
+    out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
+    out.invalid("unsupported-version.layout-1", with_parts(plain, [](Parts& p) { p.header.layout = 1; }));
+    out.invalid("unsupported-version.reserved-flag", with_parts(plain, [](Parts& p) { p.header.layout = 0x08; }));
+    out.invalid("unsupported-version.critical-chunk",
+                with_parts(plain, [](Parts& p) { insert_chunk(&p, 0, 77, false, {1}); }));
+    out.invalid("checksum.index", changed(plain, 12, static_cast<uint8_t>(plain[12] ^ 1)));
+    out.invalid("checksum.last-byte", changed(plain, plain.size() - 1, static_cast<uint8_t>(plain.back() ^ 0x80)));
+    out.invalid("need-more-input.empty", {});
+    const uint32_t index = take_apart(fine).header.index_size;
+    out.invalid("need-more-input.magic-only", {fine.begin(), fine.begin() + 7});
+    out.invalid("need-more-input.in-index", {fine.begin(), fine.begin() + index - 1});
+    out.invalid("need-more-input.no-payload", {fine.begin(), fine.begin() + index});
+    out.invalid("need-more-input.last-byte", {fine.begin(), fine.end() - 1});
+
+    const auto header = [&](const char* name, const std::function<void(Parts&)>& change) {
+        out.invalid(name, with_parts(fine, change));
+    };
+    header("malformed.bits-7", [](Parts& p) { p.header.bits = 7; });
+    header("malformed.bits-21", [](Parts& p) { p.header.bits = 21; });
+    header("malformed.no-level", [](Parts& p) { p.header.level_count = 0; });
+    header("malformed.levels-15", [](Parts& p) { p.header.level_count = 15; });
+    header("malformed.no-image", [](Parts& p) { p.exponents.clear(); });
+    header("malformed.side-2", [](Parts& p) { p.exponents[0] = 0; });
+    header("malformed.side-32769", [](Parts& p) { p.exponents[0] = 15; });
+    header("malformed.more-levels-than-sides", [](Parts& p) { p.exponents[0] = 1; });
+    header("malformed.origin-nan", [](Parts& p) { p.header.origin[1] = std::numeric_limits<float>::quiet_NaN(); });
+    header("malformed.origin-huge", [](Parts& p) { p.header.origin[2] = 0x1p101f; });
+    header("malformed.step-zero", [](Parts& p) { p.header.step = 0; });
+    header("malformed.step-negative", [](Parts& p) { p.header.step = -1; });
+    header("malformed.step-infinite", [](Parts& p) { p.header.step = std::numeric_limits<float>::infinity(); });
+    header("malformed.quantizer-zero", [](Parts& p) { p.header.quantizer = 0; });
+    header("malformed.quantizer-nan", [](Parts& p) { p.header.quantizer = std::numeric_limits<float>::quiet_NaN(); });
+    header("malformed.no-seams", [](Parts& p) { remove_chunk(&p, 0); });
+    header("malformed.seams-twice", [](Parts& p) { insert_chunk(&p, 1, 0, false, p.payloads[0]); });
+    header("malformed.seams-optional", [](Parts& p) { p.chunks[0].optional = true; });
+    header("malformed.seams-zstd", [](Parts& p) { p.chunks[0].zstd = true; });
+    header("malformed.seams-after-a-level", [](Parts& p) {
+        std::swap(p.chunks[0], p.chunks[1]);
+        std::swap(p.payloads[0], p.payloads[1]);
+    });
+    header("malformed.level-missing", [](Parts& p) { remove_chunk(&p, 1); });
+    header("malformed.level-too-many", [](Parts& p) { insert_chunk(&p, 1, 1, false, {}); });
+    header("malformed.level-optional", [](Parts& p) { p.chunks[1].optional = true; });
+    header("malformed.level-zstd", [](Parts& p) { p.chunks[1].zstd = true; });
+    header("malformed.text-twice", [](Parts& p) {
+        insert_chunk(&p, 0, 2, true, {'a'});
+        insert_chunk(&p, 0, 2, true, {'b'});
+    });
+    header("malformed.text-critical", [](Parts& p) { insert_chunk(&p, 0, 2, false, {'a'}); });
+    header("limit-exceeded.samples", [](Parts& p) { p.exponents.assign(1, 14); });
+    header("malformed.size-table-short", [](Parts& p) { p.payloads.back().pop_back(); });
+    header("malformed.size-table-long", [](Parts& p) { p.payloads.back().push_back(0); });
+
+    // The index by hand: 8 Index_Size, 9 Kind, 10 Bits, 11 Level_Count, 12 Image_Count, ...
+    out.invalid("malformed.index-size-tiny", changed(plain, 8, 5));
+    out.invalid("malformed.index-size-superfluous-byte", [&] {
+        Bytes b = {plain.begin(), plain.begin() + 8};
+        b.insert(b.end(), {0xC0, 0x00, 0x00});
+        return b;
+    }());
+    out.invalid("malformed.index-size-huge", [&] {
+        Bytes b = {plain.begin(), plain.begin() + 8};
+        b.insert(b.end(), {0x81, 0x80, 0x80, 0x08});
+        return b;
+    }());
+    out.invalid("need-more-input.index-size-16-mib", [&] {
+        Bytes b = {plain.begin(), plain.begin() + 8};
+        b.insert(b.end(), {0x80, 0x80, 0x80, 0x08});
+        return b;
+    }());
+    out.invalid("malformed.images-beyond-the-index", with_index_bytes(plain, [](Bytes& b) { b[12] = 100; }));
+    // The last chunk of the index ends in Size and CRC: Size gets a continuation bit, so that a field is missing.
+    const uint32_t plain_index = take_apart(plain).header.index_size;
+    out.invalid("malformed.chunk-cut-off", with_index_bytes(plain, [&](Bytes& b) { b[plain_index - 4 - 3] |= 0x80; }));
+    out.invalid("need-more-input.chunk-of-a-tebibyte", [&] {
+        Parts parts = take_apart(plain);
+        parts.header.side_exponents = parts.exponents;
+        parts.chunks.back().size = uint64_t{1} << 40;
+        Bytes b = serialize_header(parts.header, parts.chunks);
+        b.insert(b.end(), parts.payloads[0].begin(), parts.payloads[0].end());
+        b.insert(b.end(), parts.payloads[1].begin(), parts.payloads[1].end());
+        return b;
+    }());
+}
+
+void write_invalid_payloads(Writer& out, const Bytes& plain, const Bytes& sphere, const Bytes& torus_file) {
+    const auto seams = [&](const char* name, const Bytes& from, Bytes payload) {
+        out.invalid(name, with_parts(from, [&](Parts& p) { p.payloads[0] = std::move(payload); }));
+    };
+    seams("malformed.sideband-empty", plain, {});
+    seams("malformed.sideband-trailing-byte", plain, {0x00, 0x00});
+    seams("malformed.sideband-padding", plain, {0x01});
+    seams("malformed.sideband-node-grid-15", plain, {0xF0, 0, 0, 0});
+    // 0001: node side 3, ring 8; start in 3 bits.
+    seams("malformed.sideband-mate-of-nothing", sphere, {0x11, 0, 0, 0});      // 0001 000 1
+    seams("malformed.sideband-far-mate-of-nothing", sphere, {0x10, 0, 0, 0});  // 0001 000 000
+    seams("malformed.sideband-cut-off", sphere, [&] {
+        Bytes b = take_apart(sphere).payloads[0];
+        b.pop_back();
+        return b;
+    }());
+    // 0010: node side 5, ring 16; start 0000; 001 a boundary of 1 + 0000; 01 a path of 1 + 111, room for 15 / 2 only.
+    seams("malformed.sideband-path-too-long", torus_file, {0x20, 0x20, 0xF0, 0, 0});
+    {
+        // A boundary of one edge between the two ends of a seam: both its ends are one point, at the finest level too.
+        Sideband s = {17, 0, {{2, 31}, {kNoMate, 1}, {0, 31}, {kNoMate, 1}}};
+        Bytes b;
+        append_sideband(s, &b);
+        seams("malformed.sideband-never-closed", torus_file, b);
+        s = {33, 0, {{2, 32}, {3, 32}, {0, 32}, {1, 32}}};
+        b.clear();
+        append_sideband(s, &b);
+        seams("malformed.sideband-finer-than-image", torus_file, b);
+    }
+
+    const auto level = [&](const char* name, const Bytes& from, Bytes payload) {
+        out.invalid(name, with_parts(from, [&](Parts& p) { p.payloads.back() = std::move(payload); }));
+    };
+    level("malformed.raw-bits-missing", torus_file, Bytes(4, 0xFF));
+    level("malformed.magnitude-too-large", plain, Bytes(64, 0xFF));
+    level("malformed.stream-halved", torus_file, [&] {
+        Bytes b = take_apart(torus_file).payloads.back();
+        b.resize(b.size() / 2);
+        return b;
+    }());
+}
+
+}  // namespace
+}  // namespace gim
+
+int main(int argc, char** argv) {
+    using namespace gim;
+    if (argc != 2) return 2;
+    const fs::path folder = argv[1];
+    for (const char* sub : {"valid", "invalid"}) {
+        fs::remove_all(folder / sub);
+        fs::create_directories(folder / sub);
+    }
+    Writer out(folder);
+    write_valid(out);
+    const Bytes plain = encode({hill(5, open_square(), 0, 1)}, lossless(8, 5));
+    const Bytes sphere = encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5));
+    const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
+    const Bytes fine = encode({hill(17, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6));
+    write_invalid_container(out, plain, fine);
+    write_invalid_payloads(out, plain, sphere, torus_file);
+    return out.fine() ? 0 : 1;
+}

@@ -1,0 +1,89 @@
+// Reading the conformance vectors: what spec/vectors/README.md says a decoder must do with each of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "gim/decoder.h"
+
+namespace gim::test {
+
+// All levels that can be closed of all images, in order; the first failure ends it.
+struct Decoded {
+    gim_status status = GIM_OK;
+    std::vector<float> samples;       // of gim_decode_positions
+    std::vector<uint32_t> triangles;  // of gim_decode_mesh
+    uint64_t prefix = 0;              // bytes of the file that all this needs
+};
+
+inline gim_status decode_one(const gim_info& info, const std::vector<uint8_t>& file, uint32_t image, uint32_t level,
+                             uint32_t* coarsest, Decoded* out) {
+    gim_level_info l;
+    const gim_status found = gim_read_level_info(&info, file.data(), file.size(), image, level, &l);
+    if (found != GIM_OK) return found;
+    *coarsest = l.coarsest_level;
+    out->prefix = out->prefix > l.prefix_size ? out->prefix : l.prefix_size;
+    std::vector<float> samples(size_t{l.side} * l.side * 3), vertices(size_t{l.vertex_count} * 3);
+    std::vector<uint32_t> triangles(size_t{l.triangle_count} * 3);
+    std::vector<std::max_align_t> scratch(l.scratch_size / sizeof(std::max_align_t) + 1);
+    const size_t scratch_size = scratch.size() * sizeof(std::max_align_t);
+    gim_status s = gim_decode_positions(&info, file.data(), file.size(), image, level, samples.data(), scratch.data(),
+                                        scratch_size);
+    if (s == GIM_OK)
+        s = gim_decode_mesh(&info, file.data(), file.size(), image, level, vertices.data(), nullptr, nullptr,
+                            triangles.data(), scratch.data(), scratch_size);
+    if (s != GIM_OK) return s;
+    out->samples.insert(out->samples.end(), samples.begin(), samples.end());
+    out->triangles.insert(out->triangles.end(), triangles.begin(), triangles.end());
+    return GIM_OK;
+}
+
+inline Decoded decode_all(const std::vector<uint8_t>& file) {
+    Decoded out;
+    gim_info info;
+    out.status = gim_read_info(file.data(), file.size(), nullptr, &info);
+    for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image) {
+        uint32_t coarsest = 0;
+        for (uint32_t level = 0; out.status == GIM_OK && level <= coarsest; ++level)
+            out.status = decode_one(info, file, image, level, &coarsest, &out);
+    }
+    return out;
+}
+
+inline std::vector<uint8_t> read_bytes(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// 32-bit values as the vectors store them: little-endian.
+template <class T>
+std::vector<uint8_t> to_bytes(const std::vector<T>& values) {
+    static_assert(sizeof(T) == 4);
+    std::vector<uint8_t> bytes;
+    for (const T& v : values) {
+        uint32_t bits = 0;
+        std::memcpy(&bits, &v, 4);
+        for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(bits >> shift));
+    }
+    return bytes;
+}
+
+// The status that the name of an invalid vector asks for: the word before the first dot. GIM_OK: no such word.
+inline gim_status status_of_name(const std::string& file_name) {
+    const std::string word = file_name.substr(0, file_name.find('.'));
+    if (word == "need-more-input") return GIM_NEED_MORE_INPUT;
+    if (word == "not-gim") return GIM_NOT_GIM;
+    if (word == "unsupported-version") return GIM_UNSUPPORTED_VERSION;
+    if (word == "malformed") return GIM_MALFORMED;
+    if (word == "limit-exceeded") return GIM_LIMIT_EXCEEDED;
+    if (word == "checksum") return GIM_CHECKSUM;
+    return GIM_OK;
+}
+
+}  // namespace gim::test
