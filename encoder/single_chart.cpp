@@ -57,7 +57,7 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
 
     clock.begin(Stage::kSample);
     chart.image = sample_surface(boundary, uv, options.side);
-    if (options.fit == FitStrength::kNone) return chart;
+    if (options.fit == FitStrength::kOff) return chart;
 
     clock.begin(Stage::kFit);
     FitOptions fit_options;

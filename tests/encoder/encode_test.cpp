@@ -17,7 +17,7 @@ EncodeOptions small_options() {
     EncodeOptions options;
     options.side = 65;
     options.rate.kind = RateTarget::Kind::kLossless;
-    options.fit = FitStrength::kNone;
+    options.fit = FitStrength::kOff;
     options.density = false;
     return options;
 }

@@ -102,7 +102,7 @@ struct RateTarget {
 // How far the samples may move to bring the image's surface nearer to the input.
 enum class FitStrength {
     kAuto,   // loose for lossless coding, stiff for the rest
-    kNone,   // plain samples
+    kOff,    // plain samples
     kStiff,  // samples hardly slide along the surface, so the bytes hardly grow; about +4 dB
     kLoose,  // samples find the surface's creases; about +9 dB, and much more tangential detail
 };
