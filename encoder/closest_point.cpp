@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -134,6 +135,15 @@ struct Box {
 struct Corners {
     Vec3 a, b, c;
 };
+
+// The four children at once (GCC and Clang vector extension).
+using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
+
+Lanes load(const float* values) {
+    Lanes lanes;
+    std::memcpy(&lanes, values, sizeof lanes);
+    return lanes;
+}
 
 // Child boxes side by side. A child is a node (count 0) or the triangles first .. first + count - 1 of the leaf order.
 struct alignas(64) Node {
@@ -414,15 +424,15 @@ ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
             limit = limit_of(best.squared);
         } else {
             const Node& node = tree.nodes[entry.first];
-            float squared[kWidth] = {0, 0, 0, 0};
+            Lanes lanes = {0, 0, 0, 0};
             for (int axis = 0; axis < 3; ++axis) {
-                for (uint32_t k = 0; k < kWidth; ++k) {
-                    const float below = node.low[axis][k] - q_high[axis], above = q_low[axis] - node.high[axis][k];
-                    float gap = below > above ? below : above;
-                    gap = gap > 0.0f ? gap : 0.0f;
-                    squared[k] += gap * gap;
-                }
+                const Lanes below = load(node.low[axis]) - q_high[axis], above = q_low[axis] - load(node.high[axis]);
+                Lanes gap = below > above ? below : above;
+                gap = gap > 0.0f ? gap : Lanes{0, 0, 0, 0};
+                lanes += gap * gap;
             }
+            float squared[kWidth];
+            std::memcpy(squared, &lanes, sizeof squared);
             // Nearest child on top of the stack: insertion sort of what is near enough.
             const uint32_t base = size;
             for (uint32_t k = 0; k < node.used; ++k) {

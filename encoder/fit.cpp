@@ -9,7 +9,8 @@
 // with S(x) the sampled point of the image, p and q points of the reference, W = n n^T + tau (1 - n n^T); n is the face
 // normal where the closest point is inside a face, else the direction to it; T projects on the tangent plane and x_i,
 // x_j run over grid edges; then step as far as the guard allows: no face may turn further away from the reference's
-// normal once it is steep. lambda falls from round to round, and the number of samples rises.
+// normal once it is steep. lambda falls from round to round, and the number of samples rises. Where the start has folds,
+// the guard sleeps through the first half of the rounds: it would hold stuck samples where they are.
 //
 // Everything runs in a frame where the reference's bounding box has diagonal 1.
 #include "encoder/fit.h"
@@ -332,7 +333,7 @@ class Fitter {
     const std::vector<bool>& held() const { return held_; }
     FitQuality quality() const { return measure(x_, side_, gluing_, reference_, held_, front_); }
 
-    void round(double lambda, double density, uint64_t seed) {
+    void round(double lambda, double density, uint64_t seed, bool guarded) {
         const ImageSurface image(x_, side_, gluing_);
         find_vertex_frames(image);
         System system(side_);
@@ -341,7 +342,7 @@ class Fitter {
         add_membrane(system, lambda);
         add_boundary(system);
         const Solution solution = solve(system.matrix, system.right, gluing_, fixed_, {});
-        take_step(image, solution.values);
+        take_step(image, solution.values, guarded);
         for (size_t f = 0; f < face_hint_.size(); ++f) face_hint_[f] = nearest_reference_face_[f];
     }
 
@@ -465,8 +466,8 @@ class Fitter {
         return reference_.curve_tree.find(x_[v] + step).point;
     }
 
-    // Goes as far as no sample moves more than half its spacing and no steep cell gets steeper.
-    void take_step(const ImageSurface& image, const std::vector<Vec3>& step) {
+    // Goes as far as no sample moves more than half its spacing and, if guarded, no steep cell gets steeper.
+    void take_step(const ImageSurface& image, const std::vector<Vec3>& step, bool guarded) {
         std::vector<double> factor(x_.size(), 1.0);
         for (size_t v = 0; v < x_.size(); ++v) {
             const double limit = 0.5 * std::sqrt(vertex_area_[v]), length = step[v].norm();
@@ -483,6 +484,7 @@ class Fitter {
                     target[v] = factor[v] == 0 ? x_[v] : moved(v, factor[v] * step[v]);
                 }
             });
+            if (!guarded) break;
             const std::vector<uint32_t> bad = cells_that_turn_away(image, target, cells);
             if (bad.empty()) break;
             moving.clear();
@@ -601,31 +603,46 @@ bool no_worse(const FitQuality& after, const FitQuality& before) {
            after.folds <= before.folds;
 }
 
-Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const FitOptions& options,
-                            const Progress& progress) {
-    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
-    const Frame frame(input);
-    const Reference reference(Mesh{frame.into(input.positions), input.triangles});
-    Fitter fitter(start, reference, gluing, frame, options);
-
-    Fitted result;
-    const FitQuality before = fitter.quality();
-    const Schedule schedule = schedule_of(options);
+// Runs the whole schedule. The first `unguarded` rounds may fold faces over: samples that are stuck in a bad place get out
+// of it, and the guarded rounds that follow unfold more than these have folded.
+void run_schedule(Fitter& fitter, const Schedule& schedule, uint32_t unguarded, uint64_t seed,
+                  const Progress& progress) {
     for (uint32_t k = 0; k < schedule.rounds; ++k) {
         if (progress) progress(Stage::kFit, static_cast<double>(k) / schedule.rounds);
         const double t = schedule.rounds > 1 ? static_cast<double>(k) / (schedule.rounds - 1) : 1.0;
         const double lambda = schedule.first_lambda * std::pow(schedule.last_lambda / schedule.first_lambda, t);
         const double density = schedule.first_density + t * (schedule.last_density - schedule.first_density);
-        fitter.round(lambda, density, mix_bits(options.seed) + 2 * k);
-        ++result.rounds;
+        fitter.round(lambda, density, mix_bits(seed) + 2 * k, k >= unguarded);
     }
-    const FitQuality after = fitter.quality();
-    result.improved = no_worse(after, before);
+}
+
+Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const FitOptions& options,
+                            const Progress& progress) {
+    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+    const Frame frame(input);
+    const Reference reference(Mesh{frame.into(input.positions), input.triangles});
+    const Fitter untouched(start, reference, gluing, frame, options);
+    const FitQuality before = untouched.quality();
+    const Schedule schedule = schedule_of(options);
+
+    // An image without folds is kept so from the first round on. Elsewhere that is the second try.
+    Fitted result;
     result.image = start;
-    if (result.improved) {
+    FitQuality after = before;
+    std::vector<uint32_t> tries = {0};
+    if (before.folds > 0) tries = {schedule.rounds / 2, 0};
+    for (const uint32_t unguarded : tries) {
+        Fitter fitter = untouched;
+        run_schedule(fitter, schedule, unguarded, options.seed, unguarded == tries.front() ? progress : Progress{});
+        result.rounds += schedule.rounds;
+        const FitQuality reached = fitter.quality();
+        if (!no_worse(reached, before)) continue;
+        result.improved = true;
+        after = reached;
         for (size_t v = 0; v < start.positions.size(); ++v) {
             if (!fitter.held()[v]) result.image.positions[v] = frame.out_of(fitter.positions()[v]);
         }
+        break;
     }
     const auto in_input_unit = [&](FitQuality quality) {
         quality.to_image /= frame.scale;
@@ -633,7 +650,7 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
         return quality;
     };
     result.before = in_input_unit(before);
-    result.after = in_input_unit(result.improved ? after : before);
+    result.after = in_input_unit(after);
     if (progress) progress(Stage::kFit, 1.0);
     return result;
 }
