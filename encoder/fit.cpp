@@ -301,7 +301,6 @@ class Fitter {
         : side_(start.side),
           gluing_(gluing),
           reference_(reference),
-          options_(options),
           x_(frame.into(start.positions)),
           held_(options.held),
           face_hint_(size_t{2} * (side_ - 1) * (side_ - 1), kNone) {
@@ -571,7 +570,6 @@ class Fitter {
     uint32_t side_;
     const RingGluing& gluing_;
     const Reference& reference_;
-    const FitOptions& options_;
     std::vector<Vec3> x_;
     std::vector<bool> held_, fixed_;
     std::vector<uint32_t> on_boundary_;
