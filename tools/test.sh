@@ -16,12 +16,14 @@ say "Tests of format and decoder under the sanitizers"
 (cd "$GIM_ROOT" && ctest --preset sanitize -j"$(nproc)" --quiet) || die "the tests under the sanitizers failed: ctest --preset sanitize"
 
 configure_and_build fuzz
+shopt -s nullglob
+seeds=("$GIM_ROOT"/spec/vectors/{valid,invalid})
 while read -r target; do
     say "Fuzzing $(basename "$target") for $FUZZ_SECONDS s"
     corpus="$GIM_ROOT/build/fuzz/corpus/$(basename "$target")"
     mkdir -p "$corpus"
     "$target" -max_total_time="$FUZZ_SECONDS" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="$GIM_ROOT/build/fuzz/" "$corpus" "$GIM_ROOT"/spec/vectors/*valid 2>"$corpus.log" ||
+        -artifact_prefix="$GIM_ROOT/build/fuzz/" "$corpus" "${seeds[@]}" 2>"$corpus.log" ||
         { tail -40 "$corpus.log" && die "$(basename "$target") found something: build/fuzz/crash-*"; }
     grep -E "stat::(number_of_executed_units|average_exec_per_sec)" "$corpus.log" || true
 done < <(find "$GIM_ROOT/build/fuzz" -type f -name '*_fuzz' -perm -u+x | sort)
