@@ -46,6 +46,7 @@ CLI::Validator not_yet(const std::string& what) {
 struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
+    bool even = false;
     std::optional<double> psnr, quality;
     std::optional<uint64_t> bytes;
 };
@@ -89,6 +90,18 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
     rate->add_option("--quality", a.quality, "0 (smallest) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
+    static const std::map<std::string, FitStrength> fits = {{"auto", FitStrength::kAuto},
+                                                            {"none", FitStrength::kNone},
+                                                            {"stiff", FitStrength::kStiff},
+                                                            {"loose", FitStrength::kLoose}};
+    sub->add_option(
+           "--fit", a.command.options.fit,
+           "How far samples may move towards the surface: stiff costs hardly any bytes, loose finds creases; auto "
+           "is loose for --lossless, else stiff")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->type_name("auto|none|stiff|loose")
+        ->default_str("auto");
+    sub->add_flag("--even", a.even, "Spread samples evenly, not denser where the surface curves");
     sub->add_option("--normals", "Side of a normal map")->check(not_yet("normal maps come with a later release"));
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     sub->add_option("--threads", a.command.options.threads, "0: all cores; the bytes do not depend on it")
@@ -233,6 +246,7 @@ int run_gim(int argc, const char* const* argv) {
     int exit_status = kWrongUsage;
     if (app.got_subcommand("encode")) {
         apply_rate(encode_arguments);
+        encode_arguments.command.options.density = !encode_arguments.even;
         exit_status = run_encode(encode_arguments.command);
     } else if (app.got_subcommand("decode")) {
         exit_status = run_decode(decode_command);

@@ -44,6 +44,8 @@ ordered_json to_json(const EncodeReport& report) {
             {"cut_paths", report.cut_paths},
             {"cut_length", report.cut_length},
             {"stretch_efficiency", report.stretch_efficiency},
+            {"folds", report.folds},
+            {"folds_before_fit", report.folds_before_fit},
             {"flipped_triangles", report.flipped_triangles},
             {"bits_per_sample", report.bits_per_sample},
             {"bits_per_vertex", report.bits_per_vertex},

@@ -295,6 +295,38 @@ TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
 }
 
+// A headerless image of a sphere-like surface: opposite sides of the square differ, so it stays an open patch.
+TEST_F(Cli, HeaderlessFloatImagesAreImported) {
+    constexpr uint32_t kSide = 33;
+    std::string raw;
+    for (uint32_t k = 0; k < 3; ++k) {
+        for (uint32_t j = 0; j < kSide; ++j) {
+            for (uint32_t i = 0; i < kSide; ++i) {
+                const float x = static_cast<float>(i) / (kSide - 1);
+                const float y = static_cast<float>(j) / (kSide - 1);
+                const float value = k == 0 ? x : k == 1 ? y : 0.3F * x * y;
+                raw.append(reinterpret_cast<const char*>(&value), sizeof(value));
+            }
+        }
+    }
+    save(folder.file("raw.gim"), raw);
+    const Outcome encode =
+        gim({"encode", folder.file("raw.gim"), folder.file("out.gim"), "--lossless", "--bits", "16"});
+    ASSERT_EQ(encode.status, 0) << encode.err;
+    const Outcome compare =
+        gim({"compare", folder.file("raw.gim"), folder.file("out.gim"), "--json", "--samples", "5000"});
+    ASSERT_EQ(compare.status, 0) << compare.err;
+    const json result = json::parse(compare.out);
+    EXPECT_GT(result["comparison"]["psnr"], 90);
+    EXPECT_EQ(result["test"]["topology"]["boundary_loops"], 1);
+
+    save(folder.file("odd.gim"), raw.substr(4));
+    const Outcome odd = gim({"encode", folder.file("odd.gim"), folder.file("odd-out.gim")});
+    EXPECT_EQ(odd.status, 1);
+    EXPECT_NE(odd.err.find("headerless"), std::string::npos) << odd.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("odd-out.gim")));
+}
+
 TEST_F(Cli, GimFilesAreNotEncodedAgain) {
     const Outcome run = gim({"encode", gim_path(), folder.file("twice.gim")});
     EXPECT_EQ(run.status, 1);
@@ -335,6 +367,7 @@ TEST_F(Cli, WrongUsageEndsWithStatusTwo) {
                                                {"encode", mesh_path(), out, "--quality", "101"},
                                                {"encode", mesh_path(), out, "--layout", "spiral"},
                                                {"encode", mesh_path(), out, "--charts", "5"},
+                                               {"encode", mesh_path(), out, "--fit", "tight"},
                                                {"encode", mesh_path(), out, "--threads", "-1"},
                                                {"decode", gim_path(), folder.file("a.xyz")},
                                                {"decode", gim_path(), folder.file("a.ply"), "--level", "-1"},
@@ -358,7 +391,7 @@ TEST_F(Cli, HelpAndVersionAreNoErrors) {
     EXPECT_EQ(help.status, 0);
     for (const char* option :
          {"--layout", "--size", "--samples", "--charts", "--bits", "--lossless", "--psnr", "--bytes", "--quality",
-          "--normals", "--seed", "--threads", "--json", "--quiet", "--node-side"}) {
+          "--normals", "--seed", "--threads", "--json", "--quiet", "--node-side", "--fit", "--even"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
 }
