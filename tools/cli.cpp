@@ -91,7 +91,7 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     rate->add_option("--quality", a.quality, "0 (smallest) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
     static const std::map<std::string, FitStrength> fits = {{"auto", FitStrength::kAuto},
-                                                            {"none", FitStrength::kNone},
+                                                            {"none", FitStrength::kOff},
                                                             {"stiff", FitStrength::kStiff},
                                                             {"loose", FitStrength::kLoose}};
     sub->add_option(
