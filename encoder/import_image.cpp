@@ -75,7 +75,8 @@ std::vector<EdgePair> matching_edges(const std::vector<Vec3>& ring, double toler
     return pairs;
 }
 
-// Per ring edge its mate or kNone: runs (e, f), (e+1, f-1), ... of matching pairs, longest first.
+// Per ring edge its mate or kNone: runs (e, f), (e+1, f-1), ... of matching pairs, longest first. A run ends where nothing
+// matches and at leaves, where it would come back.
 std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t count) {
     struct Run {
         EdgePair first;
@@ -89,10 +90,11 @@ std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t co
         return EdgePair(p.first == 0 ? count - 1 : p.first - 1, p.second + 1 == count ? 0 : p.second + 1);
     };
     std::vector<Run> runs;
+    const auto leaves_leaf = [count](EdgePair p) { return p.first == (p.second + 1) % count; };
     for (const EdgePair& p : pairs) {
-        if (is_pair(backward(p))) continue;
+        if (is_pair(backward(p)) && !leaves_leaf(p)) continue;
         Run run = {p, 1};
-        for (EdgePair q = forward(p); is_pair(q) && run.length < count; q = forward(q)) ++run.length;
+        for (EdgePair q = forward(p); is_pair(q) && !leaves_leaf(q); q = forward(q)) ++run.length;
         runs.push_back(run);
     }
     std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
