@@ -152,7 +152,9 @@ TriangleMesh weld_equal_positions(const TriangleMesh& mesh) {
     }
     welded.triangles.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) {
-        welded.triangles.push_back({renamed[leader[t[0]]], renamed[leader[t[1]]], renamed[leader[t[2]]]});
+        const std::array<uint32_t, 3> corners = {renamed[leader[t[0]]], renamed[leader[t[1]]], renamed[leader[t[2]]]};
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+        welded.triangles.push_back(corners);
     }
     return welded;
 }

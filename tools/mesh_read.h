@@ -41,7 +41,8 @@ Result<TriangleMesh> read_off(std::string_view text);
 Result<TriangleMesh> read_stl(std::string_view text);
 Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder);
 
-// Vertices at exactly equal positions become one (the first); order is kept. O(V log V).
+// Vertices at exactly equal positions become one (the first), triangles that collapse by it are dropped: two samples that fell
+// on one quantized point are an edge of length zero, not a hole. Order is kept. O(V log V).
 TriangleMesh weld_equal_positions(const TriangleMesh& mesh);
 
 }  // namespace gim

@@ -73,8 +73,8 @@ class Cli : public ::testing::Test {
     static void SetUpTestSuite() {
         shared_folder = new TemporaryFolder;
         save_corpus_mesh("torus-576", mesh_path());
-        encoded = gim({"encode", mesh_path(), gim_path(), "--size", "65", "--node-side", "9", "--lossless", "--json",
-                       shared_folder->file("report.json")});
+        encoded = gim({"encode", mesh_path(), gim_path(), "--size", "65", "--node-side", "9", "--lossless", "--bits",
+                       "16", "--json", shared_folder->file("report.json")});
     }
     static void TearDownTestSuite() {
         delete shared_folder;

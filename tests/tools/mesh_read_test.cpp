@@ -299,5 +299,16 @@ TEST(MeshRead, EqualPositionsAreWeldedInOrder) {
     EXPECT_EQ(welded.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {1, 0, 3}}));
 }
 
+TEST(MeshRead, WeldingAnEdgeOfLengthZeroKeepsTheSurfaceClosed) {
+    // An octahedron whose top vertex is split into two at the same place, with the two slivers between them.
+    const TriangleMesh split = {
+        {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, -1}},
+        {{0, 1, 4}, {1, 5, 4}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {3, 0, 4}, {1, 0, 6}, {2, 1, 6}, {3, 2, 6}, {0, 3, 6}}};
+    ASSERT_TRUE(summarize_topology(split).watertight);
+    const TriangleMesh welded = weld_equal_positions(split);
+    EXPECT_EQ(welded.triangles.size(), 8U);
+    EXPECT_TRUE(summarize_topology(welded).watertight);
+}
+
 }  // namespace
 }  // namespace gim
