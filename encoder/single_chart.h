@@ -14,7 +14,7 @@ struct SingleChart {
     double cut_length = 0;           // object units
     double stretch_efficiency = 0;   // of the parametrization that was sampled
     uint64_t flipped_triangles = 0;  // in it; 0 by construction, counted all the same
-    uint64_t folds = 0;             // image faces that look away from the surface
+    uint64_t folds = 0;              // image faces that look away from the surface
     uint64_t folds_before_fit = 0;
 };
 

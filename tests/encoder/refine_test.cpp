@@ -14,7 +14,8 @@ TEST(RefineLargeFaces, LeavesNoLargeFaceAndTheSameSurface) {
         for (uint32_t f = 0; f < refined.triangles.size(); ++f) EXPECT_LE(face_area(refined, f), largest) << m.name;
         EXPECT_NEAR(surface_area(refined), area, 1e-9 * area) << m.name;
         EXPECT_EQ(euler_characteristic(refined), euler_characteristic(m.mesh)) << m.name;
-        for (size_t v = 0; v < m.mesh.positions.size(); ++v) EXPECT_EQ(refined.positions[v], m.mesh.positions[v]) << m.name;
+        for (size_t v = 0; v < m.mesh.positions.size(); ++v)
+            EXPECT_EQ(refined.positions[v], m.mesh.positions[v]) << m.name;
     }
 }
 

@@ -50,21 +50,22 @@ using Progress = std::function<void(Stage stage, double fraction)>;
 // ---- comparing -------------------------------------------------------------------------------------------------------
 
 struct CompareOptions {
-    uint32_t samples = 500000;  // area-stratified samples per direction, besides the vertices for the Hausdorff distance
-    uint64_t seed = 1;          // same seed, same figures
-    uint32_t threads = 0;       // 0: all cores; the result does not depend on it
+    uint32_t samples =
+        500000;            // area-stratified samples per direction, besides the vertices for the Hausdorff distance
+    uint64_t seed = 1;     // same seed, same figures
+    uint32_t threads = 0;  // 0: all cores; the result does not depend on it
 };
 
 // Distances are in the meshes' own unit. Cost O((|A|+|B|+samples) log) with a bounding-volume hierarchy.
 struct Comparison {
-    double diagonal = 0;           // bounding-box diagonal of the reference
-    double rms_to_test = 0;        // area-weighted RMS distance, reference -> test surface
-    double rms_to_reference = 0;   // test -> reference surface
-    double rms = 0;                // the larger of the two
-    double max_to_test = 0;        // largest sampled distance each way
+    double diagonal = 0;          // bounding-box diagonal of the reference
+    double rms_to_test = 0;       // area-weighted RMS distance, reference -> test surface
+    double rms_to_reference = 0;  // test -> reference surface
+    double rms = 0;               // the larger of the two
+    double max_to_test = 0;       // largest sampled distance each way
     double max_to_reference = 0;
-    double hausdorff = 0;          // the larger of the two
-    double psnr = 0;               // 20 log10(diagonal / rms); infinity when rms is 0
+    double hausdorff = 0;  // the larger of the two
+    double psnr = 0;       // 20 log10(diagonal / rms); infinity when rms is 0
 };
 Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options);
 
@@ -73,13 +74,13 @@ struct TopologySummary {
     uint64_t vertices = 0, edges = 0, triangles = 0;  // referenced vertices only
     uint64_t components = 0;                          // pieces connected through edges
     uint64_t boundary_loops = 0;
-    int64_t euler = 0;                                // V - E + F
-    double genus = 0;                                 // summed over components; not a number when not a manifold
+    int64_t euler = 0;  // V - E + F
+    double genus = 0;   // summed over components; not a number when not a manifold
     uint64_t boundary_edges = 0;
     uint64_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
-    uint64_t misoriented_edges = 0;                   // two faces that run the same way along their common edge
-    bool manifold = false;                            // no non-manifold edge or vertex, oriented
-    bool watertight = false;                          // manifold without boundary
+    uint64_t misoriented_edges = 0;  // two faces that run the same way along their common edge
+    bool manifold = false;           // no non-manifold edge or vertex, oriented
+    bool watertight = false;         // manifold without boundary
 };
 TopologySummary summarize_topology(const TriangleMesh& mesh);
 
@@ -127,17 +128,17 @@ struct StageTime {
 
 // Figures of one run, in the order they become known.
 struct EncodeReport {
-    uint64_t input_vertices = 0, input_triangles = 0;      // as read
-    uint64_t welded_vertices = 0, removed_triangles = 0;   // by cleaning
-    TopologySummary topology;                              // of the cleaned mesh
+    uint64_t input_vertices = 0, input_triangles = 0;     // as read
+    uint64_t welded_vertices = 0, removed_triangles = 0;  // by cleaning
+    TopologySummary topology;                             // of the cleaned mesh
     uint32_t side = 0, node_side = 0, cut_paths = 0;
-    double cut_length = 0;                                 // object units
-    double stretch_efficiency = 0;                         // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
-    uint64_t folds = 0, folds_before_fit = 0;              // image faces that look away from the input's surface
-    uint64_t flipped_triangles = 0;                        // in the parametrization; always 0 in a successful run
-    double bits_per_sample = 0, bits_per_vertex = 0;       // file bits over samples / input vertices
+    double cut_length = 0;                            // object units
+    double stretch_efficiency = 0;                    // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
+    uint64_t folds = 0, folds_before_fit = 0;         // image faces that look away from the input's surface
+    uint64_t flipped_triangles = 0;                   // in the parametrization; always 0 in a successful run
+    double bits_per_sample = 0, bits_per_vertex = 0;  // file bits over samples / input vertices
     uint64_t file_bytes = 0, sideband_bytes = 0;
-    Comparison error;                                      // decoded level 0 against the input mesh
+    Comparison error;  // decoded level 0 against the input mesh
     std::vector<StageTime> times;
     double seconds = 0;
 };
