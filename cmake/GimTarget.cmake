@@ -10,6 +10,9 @@ function(gim_target target)
     # GCC 12 sees overlaps and overflows inside inlined std::string and std::vector that are not there (GCC bug 105651).
     target_compile_options(${target} PRIVATE
         $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-stringop-overflow>)
+    if(GIM_BUILD_FUZZERS)
+        target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
+    endif()
     if(GIM_WARNINGS_AS_ERRORS)
         target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Werror>)
     endif()

@@ -1,0 +1,90 @@
+// Google Benchmarks of the decoder and of the encoder's inner loops. Run: gim_bench; compare ratios within one run only.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "corpus/generators.h"
+#include "encoder/boundary_map.h"
+#include "encoder/clean.h"
+#include "encoder/cut.h"
+#include "encoder/parametrize.h"
+#include "encoder/write_gim.h"
+#include "gim/decoder.h"
+#include "gim/encoder.h"
+
+namespace gim {
+namespace {
+
+// A bumpy open square: work for every stage of the decoder.
+GeometryImage bumpy_image(uint32_t side) {
+    GeometryImage image;
+    image.side = side;
+    for (uint32_t row = 0; row < side; ++row) {
+        for (uint32_t column = 0; column < side; ++column) {
+            const double u = double(column) / (side - 1), v = double(row) / (side - 1);
+            image.positions.emplace_back(
+                u, v, 0.1 * std::sin(9 * u) * std::cos(7 * v) + 0.004 * std::sin(61 * u + 83 * v * v));
+        }
+    }
+    return image;
+}
+
+std::vector<uint8_t> coded(bool lossless) {
+    const GeometryImage image = bumpy_image(257);
+    CodingParameters parameters;
+    parameters.lossless = lossless;
+    return write_gim({&image, 1}, parameters).value();
+}
+
+void decode_mesh(benchmark::State& state, bool lossless, uint32_t level) {
+    const std::vector<uint8_t> bytes = coded(lossless);
+    gim_info info;
+    gim_level_info shape;
+    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return state.SkipWithError("info");
+    if (gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape) != GIM_OK)
+        return state.SkipWithError("level");
+    std::vector<float> positions(size_t{shape.vertex_count} * 3);
+    std::vector<uint32_t> triangles(size_t{shape.triangle_count} * 3);
+    std::vector<std::max_align_t> scratch(shape.scratch_size / sizeof(std::max_align_t) + 1);
+    for (auto _ : state) {
+        const gim_status status =
+            gim_decode_mesh(&info, bytes.data(), bytes.size(), 0, level, positions.data(), nullptr, nullptr,
+                            triangles.data(), scratch.data(), shape.scratch_size);
+        if (status != GIM_OK) return state.SkipWithError("decode");
+        benchmark::DoNotOptimize(positions.data());
+    }
+    state.counters["triangles/s"] =
+        benchmark::Counter(double(shape.triangle_count), benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["bytes"] = double(bytes.size());
+}
+
+void minimise_stretch(benchmark::State& state) {
+    const Mesh mesh = clean(corpus::torus(64, 32, 1, 0.4)).value().mesh;
+    const Topology topology = build_topology(mesh);
+    const CutEdges cut = straighten_cut(mesh, topology, initial_cut(mesh, topology, 0));
+    const SquareBoundary boundary = map_boundary(open_mesh(mesh, topology, cut).value(), {257, 17}).value();
+    const std::vector<Vec2> border = boundary_uv(boundary, 257);
+    for (auto _ : state) benchmark::DoNotOptimize(parametrize(boundary.opened.mesh, boundary.sides, border, {}));
+    state.counters["vertices"] = double(mesh.positions.size());
+}
+
+void code_image(benchmark::State& state, bool lossless) {
+    const GeometryImage image = bumpy_image(257);
+    CodingParameters parameters;
+    parameters.lossless = lossless;
+    for (auto _ : state) benchmark::DoNotOptimize(write_gim({&image, 1}, parameters));
+}
+
+BENCHMARK_CAPTURE(decode_mesh, lossy_257, false, 0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(decode_mesh, lossy_65, false, 2)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(decode_mesh, lossless_257, true, 0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(code_image, lossy_257, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(code_image, lossless_257, true)->Unit(benchmark::kMillisecond);
+BENCHMARK(minimise_stretch)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gim
+
+BENCHMARK_MAIN();
