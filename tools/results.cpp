@@ -36,7 +36,7 @@ struct Setting {
     uint32_t bits;
 };
 constexpr std::array<Setting, 3> kSettings = {{{"quality-75", {RateTarget::Kind::kQuality, 75}, 12},
-                                               {"psnr-65", {RateTarget::Kind::kPsnr, 65}, 12},
+                                               {"psnr-70", {RateTarget::Kind::kPsnr, 70}, 12},
                                                {"lossless-16", {RateTarget::Kind::kLossless, 0}, 16}}};
 
 std::optional<TriangleMesh> scanned_mesh(const std::string& name, const std::string& folder) {
