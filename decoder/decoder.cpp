@@ -3,13 +3,11 @@
 #include <cstring>
 
 #include "decoder/image_decoder.h"
+#include "decoder/reopen.h"
 #include "decoder/triangulate.h"
 #include "gim/decoder.h"
 
 namespace gim {
-namespace {
-
-gim_status code(Status status) { return static_cast<gim_status>(status); }
 
 ContainerLimits limits_of(const gim_limits* limits) {
     ContainerLimits l;
@@ -17,16 +15,21 @@ ContainerLimits limits_of(const gim_limits* limits) {
     return l;
 }
 
-std::span<const uint8_t> span_of(const void* bytes, size_t size) { return {static_cast<const uint8_t*>(bytes), size}; }
-
-// The header again, from the bytes: gim_info is the caller's to damage, and holds no pointers.
 Status reopen(const gim_info* info, const void* bytes, size_t size, Header* header) {
     if (!info || (!bytes && size > 0)) return Status::kBadArgument;
-    if (Status s = parse_header(span_of(bytes, size), limits_of(&info->limits), header); s != Status::kOk) return s;
+    if (Status s = parse_header({static_cast<const uint8_t*>(bytes), size}, limits_of(&info->limits), header);
+        s != Status::kOk)
+        return s;
     const bool same_file = header->index_size == info->index_size && header->file_size == info->file_size &&
                            header->image_count() == info->image_count && header->level_count == info->level_count;
     return same_file ? Status::kOk : Status::kBadArgument;
 }
+
+namespace {
+
+gim_status code(Status status) { return static_cast<gim_status>(status); }
+
+std::span<const uint8_t> span_of(const void* bytes, size_t size) { return {static_cast<const uint8_t*>(bytes), size}; }
 
 // One level of one image, ready to be decoded.
 struct Level {

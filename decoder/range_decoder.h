@@ -38,7 +38,7 @@ class RangeDecoder {
         return bit;
     }
 
-    // count <= 24.
+    // count <= 25: up to 7 bits are left over, and a register holds 32.
     uint32_t code_raw(uint32_t, uint32_t count) {
         while (raw_count_ < count) {
             uint8_t byte = 0;

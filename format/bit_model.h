@@ -35,7 +35,7 @@ class BitModel {
     static constexpr std::array<Rate, kOld + 1> kRates = [] {
         std::array<Rate, kOld + 1> rates{};
         for (uint8_t age = 0; age <= kOld; ++age) {
-            uint8_t shift = 1;  // the rounded down log2 of age + 2
+            uint8_t shift = 1;  // 1 + the rounded down log2 of age + 2
             while ((2 * age + 4) >> (shift + 1) != 0) ++shift;
             rates[age] = {std::min<uint8_t>(shift, 4), std::min<uint8_t>(shift, 7),
                           static_cast<uint8_t>(std::min<int>(age + 1, kOld))};

@@ -69,8 +69,9 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     uint64_t index_size = 0;
     preamble.skip(kPreambleSize);
     if (!preamble.read_leb128(&index_size)) {
-        return preamble.left() == 0 && preamble.position() < kPreambleSize + 6 ? Status::kNeedMoreInput
-                                                                               : Status::kMalformed;
+        const size_t read = preamble.position() - kPreambleSize;
+        const bool is_cut_off = preamble.left() == 0 && read < 6 && (read == 0 || file.back() >= 0x80);
+        return is_cut_off ? Status::kNeedMoreInput : Status::kMalformed;
     }
     if (index_size < preamble.position() + kCrcSize || index_size > kMaxIndexSize) return Status::kMalformed;
     if (file.size() < index_size) return Status::kNeedMoreInput;

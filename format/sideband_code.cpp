@@ -164,6 +164,11 @@ Sideband with_coarsest_node_grid(Sideband sideband) {
                                                       [](const CutPath& p) { return p.length % 2 == 0; });
     };
     if (sideband.paths.empty()) return {2, 0, {}};
+    if (sideband.node_side == 2) {  // paths are stored on a grid of 3 at least
+        sideband.node_side = 3;
+        sideband.start *= 2;
+        for (CutPath& p : sideband.paths) p.length *= 2;
+    }
     while (sideband.node_side > 3 && is_even()) {
         sideband.node_side = (sideband.node_side - 1) / 2 + 1;
         sideband.start /= 2;

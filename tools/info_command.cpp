@@ -29,6 +29,7 @@ struct Description {
     uint64_t actual_size = 0;
     std::vector<Image> images;
     std::vector<gim_chunk> chunks;
+    std::string text;                   // what the file says about itself; usually nothing
     std::vector<std::string> problems;  // empty: everything is in order
 };
 
@@ -68,6 +69,32 @@ void add_image(const Bytes& file, uint32_t index, Description& d) {
     d.images.push_back(std::move(image));
 }
 
+constexpr uint64_t kMostText = 1 << 20;
+
+void add_text(const Bytes& file, Description& d) {
+    uint64_t size = 0;
+    gim_status status = gim_read_text(&d.info, file.data(), file.size(), nullptr, 0, &size, nullptr, 0);
+    if (status == GIM_OK && size > kMostText) {
+        d.problems.push_back("its text claims " + std::to_string(size) + " bytes");
+        return;
+    }
+    if (status == GIM_OK && size > 0) {
+        Bytes scratch(gim_text_scratch_size() + 16);
+        const size_t skew = (16 - reinterpret_cast<uintptr_t>(scratch.data()) % 16) % 16;
+        d.text.resize(size);
+        status = gim_read_text(&d.info, file.data(), file.size(), d.text.data(), d.text.size(), &size,
+                               scratch.data() + skew, scratch.size() - skew);
+    }
+    // It comes from anywhere: nothing of it may steer a terminal.
+    for (char& c : d.text) {
+        if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F) c = '?';
+    }
+    if (status != GIM_OK) {
+        d.text.clear();
+        d.problems.push_back("its text: " + describe_status(status));
+    }
+}
+
 Result<Description> describe(const Bytes& file) {
     Description d;
     const gim_status status = gim_read_info(file.data(), file.size(), nullptr, &d.info);
@@ -89,6 +116,7 @@ Result<Description> describe(const Bytes& file) {
         d.problems.push_back("the index tells of " + std::to_string(d.info.file_size) + " bytes, the file has " +
                              std::to_string(d.actual_size));
     }
+    if (damaged == 0) add_text(file, d);
     if (d.problems.empty()) {
         const Result<std::vector<DecodedImage>> decoded = decode_images(file, 0);
         if (!decoded.ok()) d.problems.push_back("decoding fails: " + decoded.error().message);
@@ -140,9 +168,10 @@ void print_json(const std::string& path, const Description& d) {
                                    {"level_count", d.info.level_count},
                                    {"images", images},
                                    {"chunks", chunks},
+                                   {"text", d.text},
                                    {"problems", d.problems},
                                    {"intact", d.problems.empty()}};
-    print_line(document.dump(2));
+    print_line(document.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 void print_text(const std::string& path, const Description& d) {
@@ -173,6 +202,7 @@ void print_text(const std::string& path, const Description& d) {
         std::printf("  offset %10llu  bytes %9llu  %s\n", static_cast<unsigned long long>(chunk.offset),
                     static_cast<unsigned long long>(chunk.size), chunk.intact != 0 ? "intact" : "DAMAGED OR MISSING");
     }
+    if (!d.text.empty()) std::printf("text\n  %s\n", d.text.c_str());
     std::printf("checks: %s\n",
                 d.problems.empty() ? "all chunks intact, decodes at full resolution" : "FAILED, see stderr");
 }

@@ -48,6 +48,17 @@ TEST(SidebandCode, HandWrittenBytesDecode) {
     EXPECT_EQ(again, bytes);
 }
 
+TEST(SidebandCode, PathsOnTheSmallestGridAreStoredOnTheNext) {
+    const Sideband smallest{2, 1, {{1, 2}, {0, 2}}};
+    const Sideband stored = with_coarsest_node_grid(smallest);
+    EXPECT_EQ(stored, (Sideband{3, 2, {{1, 4}, {0, 4}}}));
+    std::vector<uint8_t> bytes;
+    append_sideband(stored, &bytes);
+    Sideband back;
+    ASSERT_EQ(parse(bytes, &back), Status::kOk);
+    EXPECT_EQ(back, stored);
+}
+
 TEST(SidebandCode, BunnyTakesADozenBytes) {
     std::vector<uint8_t> bytes;
     append_sideband(with_coarsest_node_grid(bunny()), &bytes);

@@ -131,6 +131,14 @@ typedef struct gim_chunk {
 } gim_chunk;
 GIM_API gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, uint32_t i, gim_chunk* chunk);
 
+/* The text that the file carries about itself (META chunk): UTF-8, not zero-terminated. text_size receives its length, 0 where
+ * there is none. text NULL: only the length is wanted. capacity: bytes of text; less than the length is
+ * GIM_SCRATCH_TOO_SMALL. The length is a claim of the file: cap it before you allocate.
+ * scratch: gim_text_scratch_size() bytes, 16-byte aligned; may be NULL as long as text is. */
+GIM_API size_t gim_text_scratch_size(void);
+GIM_API gim_status gim_read_text(const gim_info* info, const void* bytes, size_t size, char* text, size_t capacity,
+                                 uint64_t* text_size, void* scratch, size_t scratch_size);
+
 /* The gluing of an image's ring at a level, for tools: class_of has 4*(side-1) entries, equal numbers for samples that
  * are one surface point (ring order: along row 0, down the last column, back along the last row, up column 0). NULL:
  * not wanted. */

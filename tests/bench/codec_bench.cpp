@@ -1,0 +1,136 @@
+// Google Benchmark: inverse wavelet, entropy decoding, whole decode of a 257 x 257 image, one thread.
+//   codec_bench [--benchmark_filter=...]; GIM_BENCH_IMAGE=file: a headerless 257 x 257 float image instead of the built-in one
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "decoder/range_decoder.h"
+#include "decoder/synthesis.h"
+#include "encoder/code_bands.h"
+#include "encoder/import_image.h"
+#include "encoder/write_gim.h"
+#include "gim/decoder.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kSide = 257;
+
+// A bumpy ellipsoid folded out of the square; an even file size per sample as scans have.
+std::vector<float> image_planes() {
+    std::vector<float> planes(size_t{kSide} * kSide * 3);
+    if (const char* name = std::getenv("GIM_BENCH_IMAGE")) {
+        std::ifstream file(name, std::ios::binary);
+        if (file.read(reinterpret_cast<char*>(planes.data()), static_cast<std::streamsize>(planes.size() * 4)))
+            return planes;
+    }
+    const size_t plane = size_t{kSide} * kSide;
+    for (uint32_t r = 0; r < kSide; ++r)
+        for (uint32_t c = 0; c < kSide; ++c) {
+            const double u = 2 * 3.14159265358979 * (c % (kSide - 1)) / (kSide - 1),
+                         v = 3.14159265358979 * (0.05 + 0.9 * r / (kSide - 1));
+            const double bumps =
+                1 + 0.03 * std::sin(17 * u) * std::sin(23 * v) + 0.01 * std::sin(61 * u + 3 * v) * std::cos(47 * v);
+            const size_t i = size_t{r} * kSide + c;
+            planes[i] = static_cast<float>(bumps * std::sin(v) * std::cos(u));
+            planes[plane + i] = static_cast<float>(1.2 * bumps * std::sin(v) * std::sin(u));
+            planes[2 * plane + i] = static_cast<float>(1.5 * bumps * std::cos(v));
+        }
+    return planes;
+}
+
+const GeometryImage& image() {
+    static const GeometryImage made = import_image(image_planes(), kSide, 2e-6).value();
+    return made;
+}
+
+std::vector<uint8_t> coded(bool lossless, double quantizer) {
+    CodingParameters p;
+    p.lossless = lossless;
+    p.quantizer = quantizer;
+    return write_gim({&image(), 1}, p).value();
+}
+
+void whole_decode(benchmark::State& state, const std::vector<uint8_t>& bytes, bool normals) {
+    gim_info info;
+    gim_level_info level;
+    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK ||
+        gim_read_level_info(&info, bytes.data(), bytes.size(), 0, 0, &level) != GIM_OK)
+        return state.SkipWithError("cannot be read");
+    std::vector<float> x(level.vertex_count * 3), n(x.size());
+    std::vector<uint32_t> t(level.triangle_count * 3);
+    std::vector<std::max_align_t> scratch(level.scratch_size / sizeof(std::max_align_t) + 1);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(gim_decode_mesh(&info, bytes.data(), bytes.size(), 0, 0, x.data(),
+                                                 normals ? n.data() : nullptr, nullptr, t.data(), scratch.data(),
+                                                 level.scratch_size));
+    }
+    state.counters["bytes"] = static_cast<double>(bytes.size());
+    state.counters["Mtri/s"] =
+        benchmark::Counter(level.triangle_count * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void decode_lossless(benchmark::State& state) { whole_decode(state, coded(true, 0), false); }
+void decode_lossy(benchmark::State& state) {
+    whole_decode(state, coded(false, static_cast<double>(state.range(0))), false);
+}
+void decode_lossy_normals(benchmark::State& state) {
+    whole_decode(state, coded(false, static_cast<double>(state.range(0))), true);
+}
+
+template <class Wavelet>
+void inverse_wavelet(benchmark::State& state) {
+    using Sample = typename Wavelet::Sample;
+    const uint32_t h = kSide / 2;
+    std::vector<int32_t> a((h + 1) * h * 3, 1), b(a.size(), 1), c(size_t{h} * h * 3, 1);
+    const LevelBands bands = {{a.data(), h + 1, h}, {b.data(), h, h + 1}, {c.data(), h, h}};
+    std::vector<Sample> low(size_t{h + 1} * (h + 1) * 3, Sample{5}), work(synthesis_work_size(kSide)),
+        out(size_t{kSide} * kSide * 3);
+    for (auto _ : state) {
+        synthesize<Wavelet>(kSide, low.data(), bands, {1.0f, 1.0f}, work.data(), out.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+void entropy_decoding(benchmark::State& state) {
+    std::vector<int32_t> units;
+    const Vec3 low = image().positions.front();
+    for (const Vec3& p : image().positions)
+        for (int k = 0; k < 3; ++k) units.push_back(static_cast<int32_t>(std::lround((p[k] - low[k]) * 1500)));
+    Pyramid<int32_t> bands = analyse<Reversible53>(units, kSide);
+    const auto streams = code_bands(bands, 1);
+    std::vector<int32_t> rows(BandWork::row_size(129) * 2);
+    std::vector<uint32_t> expected(BandWork::row_size(129));
+    std::vector<uint8_t> flags(BandWork::block_size(129));
+    const BandWork work = {rows.data(), rows.data() + BandWork::row_size(129), expected.data(), flags.data()};
+    const auto level = [&](uint32_t e) {
+        const uint32_t h = 1u << e;
+        auto& l = bands.levels[e];
+        return LevelBands{{l.horizontal.data(), h + 1, h}, {l.vertical.data(), h, h + 1}, {l.diagonal.data(), h, h}};
+    };
+    for (auto _ : state) {
+        RangeDecoder decoder(streams[0]);
+        BandModels models;
+        BandCoder coder(&decoder, &models, work);
+        coder.code_base({bands.base.data(), 2, 2});
+        for (uint32_t e = 0; e < 8; ++e) {
+            const LevelBands parents = level(e ? e - 1 : 0);
+            benchmark::DoNotOptimize(coder.code_level(level(e), e ? &parents : nullptr));
+        }
+    }
+    state.SetBytesProcessed(static_cast<int64_t>(state.iterations()) * static_cast<int64_t>(streams[0].size()));
+}
+
+BENCHMARK(inverse_wavelet<Reversible53>)->Unit(benchmark::kMicrosecond);
+BENCHMARK(inverse_wavelet<Irreversible97>)->Unit(benchmark::kMicrosecond);
+BENCHMARK(entropy_decoding)->Unit(benchmark::kMillisecond);
+BENCHMARK(decode_lossless)->Unit(benchmark::kMillisecond);
+BENCHMARK(decode_lossy)->Arg(2)->Arg(13)->Unit(benchmark::kMillisecond);
+BENCHMARK(decode_lossy_normals)->Arg(13)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gim
+
+BENCHMARK_MAIN();

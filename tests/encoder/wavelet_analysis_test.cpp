@@ -1,0 +1,116 @@
+#include "encoder/wavelet_analysis.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "decoder/synthesis.h"
+#include "tests/format/random_sideband.h"
+
+namespace gim {
+namespace {
+
+using test::Random;
+
+// Undoes all levels. Bands are given as integers to synthesize; steps say what one is worth.
+template <class Wavelet>
+std::vector<typename Wavelet::Sample> synthesize_all(Pyramid<int32_t> bands, const std::vector<BandSteps>& steps,
+                                                     std::vector<typename Wavelet::Sample> image) {
+    using Sample = typename Wavelet::Sample;
+    for (size_t e = 1; e <= bands.levels.size(); ++e) {
+        const uint32_t h = 1u << (e - 1), side = 2 * h + 1;
+        AnalysisLevel<int32_t>& l = bands.levels[e - 1];
+        const LevelBands level = {
+            {l.horizontal.data(), h + 1, h}, {l.vertical.data(), h, h + 1}, {l.diagonal.data(), h, h}};
+        std::vector<Sample> work(synthesis_work_size(side)), out(size_t{side} * side * 3);
+        synthesize<Wavelet>(side, image.data(), level, steps[e - 1], work.data(), out.data());
+        image = std::move(out);
+    }
+    return image;
+}
+
+TEST(Reversible53, EverySampleComesBackAtEverySide) {
+    Random random(1);
+    for (const uint32_t side : {3u, 5u, 9u, 17u, 33u, 129u}) {
+        std::vector<int32_t> image(size_t{side} * side * 3);
+        for (int32_t& v : image) v = static_cast<int32_t>(random.below(1u << 20));
+        const Pyramid<int32_t> bands = analyse<Reversible53>(image, side);
+        EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<BandSteps>(bands.levels.size()), bands.base), image);
+    }
+}
+
+TEST(Reversible53, SmoothImagesHaveSmallBandsAndAMeaningfulCoarserImage) {
+    const uint32_t side = 65;
+    std::vector<int32_t> image;
+    for (uint32_t r = 0; r < side; ++r)
+        for (uint32_t c = 0; c < side; ++c)
+            image.insert(image.end(), {int32_t(20 * r), int32_t(30 * c), int32_t(10 * r + 7 * c)});
+    const Pyramid<int32_t> bands = analyse<Reversible53>(image, side);
+    for (const int32_t v : bands.levels.back().diagonal) EXPECT_LE(std::abs(v), 1);
+    EXPECT_NEAR(bands.base[1 * 3 + 1], image[(side - 1) * 3 + 1], 400);
+}
+
+TEST(Irreversible97, ConstantImagesStayConstantAtEveryLevel) {
+    const uint32_t side = 33;
+    const std::vector<float> image(size_t{side} * side * 3, 1000.0f);
+    const Pyramid<float> bands = analyse<Irreversible97>(image, side);
+    for (const float v : bands.base) EXPECT_NEAR(v, 1000.0f, 0.01f);
+    for (const auto& l : bands.levels)
+        for (const float v : l.diagonal) EXPECT_NEAR(v, 0.0f, 0.001f);
+}
+
+TEST(Irreversible97, FineStepsGiveTheImageBack) {
+    Random random(2);
+    const uint32_t side = 65;
+    const float step = 1.0f / 1024;
+    std::vector<float> image(size_t{side} * side * 3);
+    for (float& v : image) v = 100 * random.unit();
+    const Pyramid<float> real = analyse<Irreversible97>(image, side);
+    const auto to_integers = [&](const std::vector<float>& values) {
+        std::vector<int32_t> q;
+        // dequantize() adds its shift, so take it off where the magnitude allows.
+        for (const float v : values) q.push_back(static_cast<int32_t>(std::lround(v / step)));
+        return q;
+    };
+    Pyramid<int32_t> bands;
+    bands.side = side;
+    for (const auto& l : real.levels)
+        bands.levels.push_back({to_integers(l.horizontal), to_integers(l.vertical), to_integers(l.diagonal)});
+    const auto back =
+        synthesize_all<Irreversible97>(bands, std::vector<BandSteps>(real.levels.size(), {step, step}), real.base);
+    for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(back[i], image[i], 0.02f);
+}
+
+// The quantizer steps rest on the norms of the synthesis functions: a unit coefficient in the middle of a band.
+TEST(BandNorms, AreThoseOfTheSynthesisFunctions) {
+    const uint32_t side = 257, exponent = 8;
+    for (uint32_t depth = 1; depth <= 4; ++depth) {
+        for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
+            Pyramid<int32_t> bands;
+            bands.side = side;
+            for (uint32_t e = 1; e <= exponent; ++e) {
+                const size_t h = size_t{1} << (e - 1);
+                bands.levels.push_back({std::vector<int32_t>((h + 1) * h * 3), std::vector<int32_t>(h * (h + 1) * 3),
+                                        std::vector<int32_t>(h * h * 3)});
+            }
+            AnalysisLevel<int32_t>& l = bands.levels[exponent - depth];
+            const size_t h = size_t{1} << (exponent - depth),
+                         columns = orientation == Orientation::kVertical ? h + 1 : h;
+            auto& band = orientation == Orientation::kHorizontal ? l.horizontal
+                         : orientation == Orientation::kVertical ? l.vertical
+                                                                 : l.diagonal;
+            band[(h / 2 * columns + h / 2) * 3] = 1;
+            const auto image = synthesize_all<Irreversible97>(bands, std::vector<BandSteps>(exponent, {1, 1}),
+                                                              std::vector<float>(12, 0.0f));
+            double energy = 0;
+            for (const float v : image) energy += double{v} * double{v};
+            const double norm = std::sqrt(energy) / double{1 + kReconstructionShift};
+            const BandNorms& n = kBandNorms[depth - 1];
+            EXPECT_NEAR(norm / double{orientation == Orientation::kDiagonal ? n.diagonal : n.edge}, 1, 1e-3) << depth;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gim
