@@ -107,7 +107,7 @@ CutEdges edges_at(const Surface& surface, uint32_t v) {
 CutEdges restart_at_extremum(const Surface& surface, const CutEdges& cut, std::vector<AugmentStep>& steps) {
     const uint32_t first = find_extremum(surface, cut);
     if (first == kNone) return cut;
-    const CutEdges bootstrap = edges_at(surface, first);
+    CutEdges bootstrap = edges_at(surface, first);
     const uint32_t second = find_extremum(surface, bootstrap);
     if (second == kNone || second == first) return bootstrap;
     std::vector<uint8_t> goal(surface.mesh.positions.size(), 0);

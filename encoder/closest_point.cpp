@@ -136,14 +136,41 @@ struct Corners {
     Vec3 a, b, c;
 };
 
-// The four children at once (GCC and Clang vector extension).
-using Lanes = float __attribute__((vector_size(kWidth * sizeof(float))));
+// The four children at once (GCC and Clang vector extension), in the precision that the query needs.
+template <class Real>
+struct Lane4;
+template <>
+struct Lane4<float> {
+    using Type = float __attribute__((vector_size(kWidth * sizeof(float))));
+};
+template <>
+struct Lane4<double> {
+    using Type = double __attribute__((vector_size(kWidth * sizeof(double))));
+};
+template <class Real>
+using Lanes = typename Lane4<Real>::Type;
 
-Lanes load(const float* values) {
-    Lanes lanes;
-    std::memcpy(&lanes, values, sizeof lanes);
-    return lanes;
+// (Through a reference: a vector wider than the machine's has no settled way to be returned.)
+template <class Real>
+void load(const float* values, Lanes<Real>& lanes) {
+    Lanes<float> floats;
+    std::memcpy(&floats, values, sizeof floats);
+    lanes = __builtin_convertvector(floats, Lanes<Real>);
 }
+
+// A query this many extents of the mesh away (or nearer) is pruned with floats. Farther ones see all boxes at nearly the
+// same distance, and floats could not tell them apart.
+constexpr double kFar = 32;
+
+// Rounding of the query's coordinates, and the margin within which a box is opened although it seems too far.
+template <class Real>
+struct Margin {
+    static constexpr Real kQuery = Real(2.5e-7), kLimit = Real(1.00001), kLeast = Real(1e-37);
+};
+template <>
+struct Margin<double> {
+    static constexpr double kQuery = 1e-15, kLimit = 1 + 1e-12, kLeast = 1e-300;
+};
 
 // Child boxes side by side. A child is a node (count 0) or the triangles first .. first + count - 1 of the leaf order.
 struct alignas(64) Node {
@@ -378,10 +405,11 @@ ClosestPointTree::~ClosestPointTree() = default;
 ClosestPointTree::ClosestPointTree(ClosestPointTree&&) noexcept = default;
 ClosestPointTree& ClosestPointTree::operator=(ClosestPointTree&&) noexcept = default;
 
-ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
-    const Impl& tree = *impl_;
-    if (tree.nodes.empty()) return {};
+namespace {
 
+// One query, with boxes measured in the precision of Real.
+template <class Real, class Tree>
+ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
     Candidate best;
     uint32_t best_triangle = kNone, best_position = 0;
     const auto try_triangle = [&](uint32_t position) {
@@ -396,22 +424,22 @@ ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
     };
     // A little above the best distance, in the tree's frame: boxes that might hold an equally near triangle pass.
     const auto limit_of = [&](double squared) {
-        return static_cast<float>(squared * tree.scale * tree.scale) * 1.00001f + 1e-37f;
+        return static_cast<Real>(squared * tree.scale * tree.scale) * Margin<Real>::kLimit + Margin<Real>::kLeast;
     };
     if (hint < tree.position.size()) try_triangle(tree.position[hint]);
-    float limit = limit_of(best.squared);
+    Real limit = limit_of(best.squared);
 
     // The query as an interval that allows for its own rounding, so that box distances are never too large.
-    float q_low[3], q_high[3];
+    Real q_low[3], q_high[3];
     const Vec3 local = (query - tree.middle) * tree.scale;
-    const auto slack = static_cast<float>(2.5e-7 * (local.cwiseAbs().maxCoeff() + 1));
+    const auto slack = static_cast<Real>(double{Margin<Real>::kQuery} * (local.cwiseAbs().maxCoeff() + 1));
     for (int k = 0; k < 3; ++k) {
-        q_low[k] = static_cast<float>(local[k]) - slack;
-        q_high[k] = static_cast<float>(local[k]) + slack;
+        q_low[k] = static_cast<Real>(local[k]) - slack;
+        q_high[k] = static_cast<Real>(local[k]) + slack;
     }
 
     struct Entry {
-        float squared;
+        Real squared;
         uint32_t first;
         uint32_t count;
     };
@@ -424,14 +452,17 @@ ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
             limit = limit_of(best.squared);
         } else {
             const Node& node = tree.nodes[entry.first];
-            Lanes lanes = {0, 0, 0, 0};
+            Lanes<Real> lanes = {0, 0, 0, 0};
             for (int axis = 0; axis < 3; ++axis) {
-                const Lanes below = load(node.low[axis]) - q_high[axis], above = q_low[axis] - load(node.high[axis]);
-                Lanes gap = below > above ? below : above;
-                gap = gap > 0.0f ? gap : Lanes{0, 0, 0, 0};
+                Lanes<Real> low, high;
+                load<Real>(node.low[axis], low);
+                load<Real>(node.high[axis], high);
+                const Lanes<Real> below = low - q_high[axis], above = q_low[axis] - high;
+                Lanes<Real> gap = below > above ? below : above;
+                gap = gap > Real(0) ? gap : Lanes<Real>{0, 0, 0, 0};
                 lanes += gap * gap;
             }
-            float squared[kWidth];
+            Real squared[kWidth];
             std::memcpy(squared, &lanes, sizeof squared);
             // Nearest child on top of the stack: insertion sort of what is near enough.
             const uint32_t base = size;
@@ -455,6 +486,14 @@ ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
             entry = stack[--size];
         } while (entry.squared > limit);
     }
+}
+
+}  // namespace
+
+ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
+    if (impl_->nodes.empty()) return {};
+    const double distance = (query - impl_->middle).cwiseAbs().maxCoeff() * impl_->scale;
+    return distance <= kFar ? find_in<float>(*impl_, query, hint) : find_in<double>(*impl_, query, hint);
 }
 
 std::vector<ClosestPoint> ClosestPointTree::find_all(std::span<const Vec3> queries, uint32_t threads,

@@ -272,7 +272,7 @@ void for_cell_rows(uint32_t cell_rows, const Body& body) {
 }
 
 void add_pulls(System& system, const ImageSurface& image, const std::vector<Pull>& pulls) {
-    const uint32_t cell_rows = system.matrix.side() - 1;
+    const uint32_t cell_rows = std::max(2u, system.matrix.side()) - 1;
     // Counting sort by row of cells; inside a row the order of the samples.
     std::vector<uint32_t> first(cell_rows + 1, 0);
     for (const Pull& pull : pulls) {

@@ -134,7 +134,7 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
         path.length = end - starts[i];
         if (mate[starts[i]] != kNone) {
             // The mate begins with the edge that this path's last edge is glued to.
-            const uint32_t first = mate[(end - 1) % count];
+            const uint32_t first = mate[end > count ? end - 1 - count : end - 1];
             path.mate = static_cast<int32_t>(std::lower_bound(starts.begin(), starts.end(), first) - starts.begin());
         }
         s.paths.push_back(path);

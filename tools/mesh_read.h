@@ -4,7 +4,7 @@
 // importer that bypasses its half-edges) lose what the encoder needs: coordinates pass through float (4300000.125
 // becomes 4300000), a "nan" in a text file turns the rest of it into zeros or stale indices without an error, STL drops
 // degenerate and merges equal vertices, and a header that claims 2^31 elements aborts the program. glTF goes through
-// tinygltf.
+// tinygltf. OpenMesh is the tests' second opinion on the files that gim writes.
 //
 // Every vertex and face is kept in file order, faces with more than three corners are triangulated, non-finite
 // coordinates are kept for the cleaning stage to report. No reader allocates more than a small multiple of the file's

@@ -8,7 +8,7 @@ readonly GIM_BUILD_PACKAGES=(
     g++ cmake ninja-build pkg-config
     libeigen3-dev libtbb-dev libzstd-dev
     libcli11-dev nlohmann-json3-dev libopenexr-dev libtinygltf-dev libstb-dev
-    libgtest-dev
+    libgtest-dev libopenmesh-dev
 )
 
 say() { printf '\n== %s\n' "$*"; }

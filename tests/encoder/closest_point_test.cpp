@@ -146,6 +146,21 @@ TEST(ClosestPointTree, FarOffsetsAndExtremeScalesKeepTheirDigits) {
     }
 }
 
+TEST(ClosestPointTree, QueriesFarAwayFindTheirPointAndOpenFewBoxes) {
+    // Far away all boxes are at the same distance but for the last digits: without care every triangle is visited, and
+    // this many queries never end.
+    const Mesh mesh = random_soup(100000, 12);
+    const ClosestPointTree tree(mesh);
+    std::mt19937_64 engine(13);
+    std::vector<Vec3> queries;
+    for (int i = 0; i < 100000; ++i) queries.push_back(Vec3(3e6, -5e6, 100) + 1e4 * point_in_cube(engine));
+    const std::vector<ClosestPoint> found = tree.find_all(queries);
+    for (size_t i = 0; i < 20; ++i) {
+        const ClosestPoint expected = search_all(mesh, queries[i]);
+        EXPECT_LE(found[i].squared_distance, expected.squared_distance * (1 + 1e-14));
+    }
+}
+
 TEST(ClosestPointTree, AnEmptyMeshHasNoClosestPoint) {
     EXPECT_EQ(ClosestPointTree(Mesh{}).find({0, 0, 0}).triangle, kNone);
 }
