@@ -154,7 +154,8 @@ TriangleMesh torus(uint32_t around, uint32_t across, double radius, double tube_
 }
 
 TriangleMesh plate_with_holes(uint32_t holes, uint32_t cells) {
-    const int c = std::max(1, static_cast<int>(cells)), width = (2 * static_cast<int>(holes) + 1) * c, height = 3 * c, depth = c;
+    const int c = std::max(1, static_cast<int>(cells)), width = (2 * static_cast<int>(holes) + 1) * c, height = 3 * c,
+              depth = c;
     const auto solid = [&](int x, int y) {
         return x >= 0 && y >= 0 && x < width && y < height && !((x / c) % 2 == 1 && y / c == 1);
     };
