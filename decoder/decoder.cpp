@@ -137,6 +137,8 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     info->file_size = header.file_size;
     std::copy(header.origin.begin(), header.origin.end(), info->origin);
     info->step = header.step;
+    for (size_t k = 0; k < header.level_psnr.size(); ++k)
+        info->level_psnr[header.level_psnr.size() - 1 - k] = 0.5f * header.level_psnr[k];
     info->quantizer = header.quantizer;
     info->index_size = header.index_size;
     info->limits = {l.max_samples, l.max_images, l.max_side};

@@ -109,6 +109,7 @@ CutEdges restart_at_extremum(const Surface& surface, const CutEdges& cut, std::v
     if (first == kNone) return cut;
     CutEdges bootstrap = edges_at(surface, first);
     const uint32_t second = find_extremum(surface, bootstrap);
+    steps.push_back({0, first, bootstrap});
     if (second == kNone || second == first) return bootstrap;
     std::vector<uint8_t> goal(surface.mesh.positions.size(), 0);
     goal[first] = 1;
@@ -117,8 +118,7 @@ CutEdges restart_at_extremum(const Surface& surface, const CutEdges& cut, std::v
     if (path.size() < 2) return bootstrap;
     CutEdges result(cut.size(), 0);
     mark_path(surface.topology, path, 1, result);
-    steps.push_back({0, first});
-    steps.push_back({0, second});
+    steps.push_back({0, second, result});
     return result;
 }
 
@@ -157,7 +157,7 @@ State follow(const Surface& surface, const AugmentOptions& options, const State&
         trial.cut = extend_cut(surface, trial.cut, extremum);
         judge(surface, options.boundary, trial);
         if (trial.efficiency == 0) break;  // more cut-paths than the ring can hold
-        trial.steps.push_back({trial.efficiency, extremum});
+        trial.steps.push_back({trial.efficiency, extremum, trial.cut});
         misses = trial.efficiency > best.efficiency ? 0 : misses + 1;
         if (misses == 0) best = trial;
     }
@@ -191,7 +191,7 @@ State start_cut(const Surface& surface, const AugmentOptions& options) {
                 straighten_cut(surface.mesh, surface.topology, shorten_cut(surface.mesh, surface.topology, state.cut));
         }
         judge(surface, options.boundary, state);
-        state.steps.push_back({state.efficiency, kNone});
+        state.steps.push_back({state.efficiency, kNone, state.cut});
     });
     return *std::max_element(states.begin(), states.end(),
                              [](const State& a, const State& b) { return a.efficiency < b.efficiency; });
@@ -285,7 +285,7 @@ Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const Augm
     const ProgressiveMesh::Compacted coarse = hierarchy.compact(mesh.positions);
     const Topology coarse_topology = build_topology(coarse.mesh);
     State state = search({coarse.mesh, coarse_topology}, options, progress);
-    FoundCut found{std::move(state.cut), std::move(state.steps)};
+    FoundCut found{std::move(state.cut), std::move(state.steps), coarse.mesh};
 
     CutEdges marks(topology.twin.size(), 0);
     for (size_t h = 0; h < found.cut.size(); ++h) marks[3 * coarse.faces[h / 3] + h % 3] = found.cut[h];

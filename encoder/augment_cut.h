@@ -27,11 +27,13 @@ struct AugmentOptions {
 struct AugmentStep {
     double efficiency = 0;      // stretch efficiency of the coarse map
     uint32_t extremum = kNone;  // vertex of the input mesh that this step reached
+    CutEdges cut;               // the cut after it, of the mesh searched on
 };
 
 struct FoundCut {
     CutEdges cut;  // of the input mesh; opens it into a disk
     std::vector<AugmentStep> steps;
+    Mesh searched;  // the coarse mesh
 };
 Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const AugmentOptions& options,
                           const Progress& progress = {});

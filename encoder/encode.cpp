@@ -1,21 +1,87 @@
 // Triangle mesh -> .gim: the driver. Its lines are the stages; those of one surface are in single_chart.cpp, those that
 // every kind of input shares in finish_encoding.cpp.
-#include <tbb/task_arena.h>
-
-#include <exception>
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "encoder/clean.h"
 #include "encoder/finish_encoding.h"
+#include "encoder/refine.h"
 #include "encoder/result.h"
 #include "encoder/single_chart.h"
 #include "encoder/stage_clock.h"
+#include "encoder/topology_summary.h"
 
 namespace gim {
 
 namespace {
 
-Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& options, const Progress& progress) {
+// Samples of a component's image per side: as dense as the largest component's image, to a power of two.
+uint32_t side_of_component(double area, double largest, uint32_t side) {
+    constexpr int kLeastExponent = 4;
+    const int most = std::countr_zero(side - 1);
+    const double halvings = area > 0 ? 0.5 * std::log2(largest / area) : most;
+    const int exponent = most - static_cast<int>(std::lround(std::min(halvings, double(most))));
+    return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
+}
+
+// A component whose cut needs more room than its area deserves gets it.
+Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most, StageClock& clock,
+                                     const Observer& observer) {
+    for (;; options.side = 2 * (options.side - 1) + 1) {
+        options.node_side = std::min(options.node_side, options.side);
+        auto chart = make_geometry_image(mesh, options, clock, observer);
+        if (chart.ok() || options.side >= most) return chart;
+    }
+}
+
+void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& report) {
+    report.cut_length += chart.cut_length;
+    report.stretch_efficiency += part_of_area * chart.stretch_efficiency;
+    report.flipped_triangles += chart.flipped_triangles;
+    report.folds += chart.folds;
+    report.folds_before_fit += chart.folds_before_fit;
+}
+
+// One image per connected component, in the order of their first faces.
+Result<std::vector<GeometryImage>> make_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                               const Observer& observer, EncodeReport& report) {
+    const Components components = connected_components(mesh.triangles, mesh.positions.size());
+    std::vector<Mesh> parts;
+    double largest = 0, all = 0;
+    for (uint32_t k = 0; k < components.count; ++k) {
+        parts.push_back(extract_component(mesh, components, k));
+        largest = std::max(largest, surface_area(parts.back()));
+        all += surface_area(parts.back());
+    }
+    std::vector<GeometryImage> images;
+    for (size_t k = 0; k < parts.size(); ++k) {
+        const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
+        const Observer with_prefix = [&](const Snapshot& state) {
+            Snapshot named = state;
+            named.name = prefix + state.name;
+            observer(named);
+        };
+        const double area = surface_area(parts[k]);
+        EncodeOptions part_options = options;
+        part_options.side = side_of_component(area, largest, options.side);
+        auto chart = make_roomy_image(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer());
+        if (!chart.ok() && parts.size() == 1) return chart.error();
+        if (!chart.ok()) {
+            return Error{chart.error().stage, "component " + std::to_string(k) + " of " + std::to_string(parts.size()) +
+                                                  " (" + std::to_string(parts[k].triangles.size()) +
+                                                  " triangles): " + chart.error().message};
+        }
+        add_to_report(chart.value(), all > 0 ? area / all : 1.0 / double(parts.size()), report);
+        images.push_back(std::move(chart.value().image));
+    }
+    return images;
+}
+
+Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& options, const Progress& progress,
+                           const Observer& observer) {
     StageClock clock(progress);
     Encoded encoded;
     EncodeReport& report = encoded.report;
@@ -23,27 +89,22 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
     report.input_triangles = input.triangles.size();
 
     clock.begin(Stage::kClean);
-    GIM_TRY(cleaned, clean(input));
+    GIM_TRY(cleaned, clean(input, {.require_connected = false}));
     report.welded_vertices = cleaned.report.welded_vertices;
     report.removed_triangles = cleaned.report.degenerate_triangles + cleaned.report.duplicate_triangles;
     report.topology = cleaned.report.topology;
 
-    GIM_TRY(chart, make_geometry_image(cleaned.mesh, options, clock));
-    report.cut_length = chart.cut_length;
-    report.stretch_efficiency = chart.stretch_efficiency;
-    report.flipped_triangles = chart.flipped_triangles;
-    report.folds = chart.folds;
-    report.folds_before_fit = chart.folds_before_fit;
-
-    return finish_encoding({&chart.image, 1}, std::move(cleaned.mesh), options, clock, std::move(encoded));
+    GIM_TRY(images, make_images(cleaned.mesh, options, clock, observer, report));
+    return finish_encoding(images, std::move(cleaned.mesh), options, clock, std::move(encoded));
 }
 
 }  // namespace
 
-Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress) {
+Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress,
+                       const Observer& observer) {
     GIM_TRY(checked, check_options(options));
     (void)checked;
-    return guarded(options.threads, [&] { return run_stages(mesh, options, progress); });
+    return guarded(options.threads, [&] { return run_stages(mesh, options, progress, observer); });
 }
 
 }  // namespace gim

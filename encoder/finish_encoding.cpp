@@ -1,11 +1,14 @@
 #include "encoder/finish_encoding.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "encoder/compare_meshes.h"
 #include "encoder/decode_surface.h"
+#include "encoder/level_report.h"
 #include "encoder/rate_control.h"
 #include "encoder/result.h"
+#include "encoder/write_gim.h"
 #include "gim/decoder.h"
 
 namespace gim {
@@ -54,9 +57,22 @@ uint64_t sideband_size(std::span<const uint8_t> bytes) {
 }
 
 void describe_images(std::span<const GeometryImage> images, EncodeReport& report) {
-    report.side = images.front().side;
-    report.node_side = images.front().sideband.node_side;
-    for (const GeometryImage& image : images) report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+    report.images = static_cast<uint32_t>(images.size());
+    for (const GeometryImage& image : images) {
+        if (image.side > report.side) report.node_side = image.sideband.node_side;
+        report.side = std::max(report.side, image.side);
+        report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+    }
+}
+
+// One value per level of the file; 0 for those that no image can close.
+std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, std::span<const uint8_t> bytes) {
+    gim_info info;
+    const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    if (gim_read_info(bytes.data(), bytes.size(), &no_limits, &info) != GIM_OK) return {};
+    std::vector<double> psnr(info.level_count, 0.0);
+    for (const LevelReport& level : levels) psnr[level.level] = level.psnr;
+    return psnr;
 }
 
 void describe_file(std::span<const GeometryImage> images, std::span<const uint8_t> bytes, EncodeReport& report) {
@@ -113,12 +129,16 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     CodingParameters parameters;
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
+    parameters.level_psnr = true;
     GIM_TRY(bytes, code_and_check(images, parameters, options, surface));
     encoded.bytes = std::move(bytes);
 
     clock.begin(Stage::kCompare);
     GIM_TRY(comparison, compare_file(encoded.bytes, surface, compare_options));
     encoded.report.error = comparison;
+    GIM_TRY(levels, measure_levels(encoded.bytes, surface, comparison, options.threads));
+    encoded.report.levels = std::move(levels);
+    encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, encoded.bytes));
     clock.end();
 
     describe_file(images, encoded.bytes, encoded.report);

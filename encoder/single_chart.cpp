@@ -1,21 +1,28 @@
 #include "encoder/single_chart.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
 #include "encoder/augment_cut.h"
 #include "encoder/boundary_map.h"
+#include "encoder/circle_map.h"
 #include "encoder/density.h"
 #include "encoder/fit.h"
 #include "encoder/parametrize.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
 #include "encoder/sample.h"
+#include "encoder/snapshot.h"
 #include "encoder/stretch.h"
 
 namespace gim {
 
 namespace {
 
-// Faces larger than this part of the surface are split before cutting: about 8 samples of a 257 x 257 image.
-constexpr double kLargestFace = 1.0 / 8000;
+// Faces larger than this part of the surface are split before cutting: about 8 samples of the image, but neither so few faces
+// that the cut has no choice, nor so many that they cost more time than they are worth.
+double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
 
 // A loose fit multiplies the tangential detail: only what is coded without loss can afford it.
 bool is_loose(const EncodeOptions& options) {
@@ -23,20 +30,44 @@ bool is_loose(const EncodeOptions& options) {
     return options.rate.kind == RateTarget::Kind::kLossless;
 }
 
+std::string percent(double part) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f%%", 100 * part);
+    return text;
+}
+
+// The search for the cut, state by state.
+void show_cut_search(const FoundCut& found, const Observer& observer) {
+    const Topology topology = build_topology(found.searched);
+    uint32_t number = 0;
+    for (size_t i = 0; i < found.steps.size(); ++i) {
+        const AugmentStep& step = found.steps[i];
+        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut) continue;  // only judged by the next
+        const auto opened = open_mesh(found.searched, topology, step.cut);
+        if (!opened.ok()) continue;
+        char name[32];
+        std::snprintf(name, sizeof name, "cut-%02u", number++);
+        const std::string reached = step.efficiency > 0 ? "stretch efficiency " + percent(step.efficiency) : "start";
+        observer(make_snapshot(name, reached, opened.value(), circle_map(opened.value())));
+    }
+}
+
 }  // namespace
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                        const Observer& observer) {
     SingleChart chart;
     const BoundaryMapOptions square{options.side, options.node_side};
 
     clock.begin(Stage::kCut);
-    const Mesh fine = refine_large_faces(mesh, kLargestFace * surface_area(mesh));
+    const Mesh fine = refine_large_faces(mesh, largest_face(options.side) * surface_area(mesh));
     const Topology topology = build_topology(fine);
     AugmentOptions search;
     search.boundary = square;
     GIM_TRY(found, find_cut(fine, topology, search, clock.progress()));
     chart.cut_length = cut_length(fine, topology, found.cut);
     GIM_TRY(opened, open_mesh(fine, topology, found.cut));
+    if (observer) show_cut_search(found, observer);
 
     clock.begin(Stage::kBoundaryMap);
     GIM_TRY(boundary, map_boundary(std::move(opened), square));
@@ -47,16 +78,21 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     GIM_TRY(even, parametrize(disk, boundary.sides, border, {}, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
+    if (observer) {
+        observer(make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), boundary.opened, uv));
+    }
     if (options.density) {
         ParametrizeOptions weighted;
         weighted.importance = importance_from_error(disk, uv, sample_surface(boundary, uv, options.side), {});
         GIM_TRY(adapted, parametrize(disk, boundary.sides, border, weighted, clock.progress()));
         uv = std::move(adapted);
+        if (observer) observer(make_snapshot("map-density", "denser where it errs", boundary.opened, uv));
     }
     chart.flipped_triangles = count_flipped(disk, uv);
 
     clock.begin(Stage::kSample);
     chart.image = sample_surface(boundary, uv, options.side);
+    if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
     if (options.fit == FitStrength::kOff) return chart;
 
     clock.begin(Stage::kFit);
@@ -68,6 +104,7 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     chart.image = std::move(fitted.image);
     chart.folds = fitted.after.folds;
     chart.folds_before_fit = fitted.before.folds;
+    if (observer) observer(make_snapshot("image-fitted", "fitted", chart.image));
     return chart;
 }
 

@@ -138,6 +138,7 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     header.bits = parameters.bits;
     header.level_count = largest > base ? largest - base + 1 : 1;
     writer.text_ = parameters.text;
+    if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
 
     // One isotropic step for the file. A surface that is a single point still needs a positive one.
     const Box box = bounding_box(images);
@@ -161,6 +162,7 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
 std::vector<uint8_t> GimWriter::write(double quantizer) const {
     Header header = header_;
     header.side_exponents = side_exponents_;
+    header.level_psnr = level_psnr_;
     if (header.coding == Coding::kLossy) {
         header.quantizer = std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
     }
@@ -194,6 +196,26 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
     std::vector<uint8_t> file = serialize_header(header, chunks);
     for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
     return file;
+}
+
+std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {
+    std::vector<uint8_t> changed(file.begin(), file.end());
+    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    Header header;
+    if (parse_header(file, no_limits, &header) != Status::kOk || header.level_psnr.size() != psnr.size())
+        return changed;
+    std::vector<uint8_t> coded;
+    for (size_t k = psnr.size(); k-- > 0;) {
+        coded.push_back(static_cast<uint8_t>(psnr[k] > 0 ? std::min(std::floor(2 * psnr[k]), 255.0) : 0.0));
+    }
+    header.level_psnr = coded;
+    std::vector<Chunk> chunks;
+    ChunkWalk walk(header);
+    Chunk chunk;
+    for (uint64_t offset = 0; walk.next(&chunk, &offset);) chunks.push_back(chunk);
+    const std::vector<uint8_t> head = serialize_header(header, chunks);
+    std::copy(head.begin(), head.end(), changed.begin());
+    return changed;
 }
 
 Result<std::vector<uint8_t>> write_gim(std::span<const GeometryImage> images, const CodingParameters& parameters) {

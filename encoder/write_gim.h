@@ -19,6 +19,7 @@ struct CodingParameters {
     double quantizer = 8;  // lossy: step of a coefficient of unit norm, in quantization steps; twice: about 6 dB less
     uint32_t base_side = 17;  // side of the coarsest stored level; smaller ones cost about 7 bytes each
     std::string text;         // goes into a META chunk unless empty; UTF-8
+    bool level_psnr = false;  // leaves room in the header for set_level_psnr
 };
 
 // All that does not depend on the quantizer, so that a search over quantizers does it once.
@@ -34,11 +35,15 @@ class GimWriter {
     GimWriter() = default;
 
     Header header_;
-    std::vector<uint8_t> side_exponents_, seams_;
+    std::vector<uint8_t> side_exponents_, level_psnr_, seams_;
     std::string text_;
     std::vector<Pyramid<int32_t>> lossless_;
     std::vector<Pyramid<float>> lossy_;
 };
+
+// Writes the measured PSNR of each level (finest first, dB) into the header of a file of ours that has room for them.
+// The size stays.
+std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr);
 
 Result<std::vector<uint8_t>> write_gim(std::span<const GeometryImage> images, const CodingParameters& parameters);
 

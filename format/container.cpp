@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
-constexpr uint8_t kLossyFlag = 0x04, kReservedFlags = 0xF8, kLayoutMask = 0x03;
+constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kReservedFlags = 0xF0, kLayoutMask = 0x03;
 
 bool parse_chunk(ByteReader* reader, Chunk* chunk) {
     uint64_t tag = 0;
@@ -119,6 +119,11 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     if (header->coding == Coding::kLossy &&
         (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer)))
         return Status::kMalformed;
+    if (kind & kPsnrFlag) {
+        const size_t psnr_at = reader.position();
+        if (!reader.skip(levels)) return Status::kMalformed;
+        header->level_psnr = file.subspan(psnr_at, levels);
+    }
     header->index = file.subspan(reader.position(), body - reader.position());
     return check_index(header);
 }
@@ -139,7 +144,8 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(static_cast<uint8_t>(header.layout | (header.coding == Coding::kLossy ? kLossyFlag : 0)));
+    rest.push_back(static_cast<uint8_t>(header.layout | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+                                        (header.level_psnr.empty() ? 0 : kPsnrFlag)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
     append_leb128(header.image_count(), &rest);
@@ -147,6 +153,7 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
     for (const float o : header.origin) append_f32(o, &rest);
     append_f32(header.step, &rest);
     if (header.coding == Coding::kLossy) append_f32(header.quantizer, &rest);
+    for (const uint8_t psnr : header.level_psnr) rest.push_back(psnr);
     for (const Chunk& chunk : chunks) {
         append_leb128(
             uint64_t{static_cast<uint32_t>(chunk.type)} << 2 | (chunk.zstd ? 2u : 0u) | (chunk.optional ? 1u : 0u),

@@ -58,6 +58,7 @@ struct Header {
     float step = 1;
     float quantizer = 0;                      // kLossy only
     std::span<const uint8_t> side_exponents;  // one per image; side = 2^j + 1
+    std::span<const uint8_t> level_psnr;      // empty, or per level, coarsest first: half decibels, 0: not known
 
     // Derived.
     std::span<const uint8_t> index;

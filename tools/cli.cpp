@@ -54,8 +54,9 @@ struct EncodeArguments {
 void add_encode(CLI::App& app, EncodeArguments& a) {
     CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
     sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension. It must be one connected,\n"
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension.  It must be an\n"
         "orientable surface without non-manifold edges; duplicates are welded and degenerate faces removed first.\n"
+        "Each connected component becomes an image of its own in the file.\n"
         "A headerless geometry image (planar float32 x, y, z; side from the size) named *.gim is imported as it is.\n"
         "At most one of --lossless, --psnr, --bytes and --quality; without any, --quality 75.\n\n"
         "  gim encode bunny.ply bunny.gim\n"
@@ -109,6 +110,9 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         ->capture_default_str();
     sub->add_option("--json", a.command.json, "Write every figure of the run to this file (-: standard output)")
         ->type_name("REPORT");
+    sub->add_option("--debug-dir", a.command.debug_folder,
+                    "Write pictures of every state to this folder: the cut as it grows, the maps, the samples")
+        ->type_name("DIR");
     sub->add_flag("--quiet", a.command.quiet, "No progress and no summary");
 }
 

@@ -12,7 +12,8 @@ namespace gim {
 struct EncodeCommand {
     std::string input, output;
     EncodeOptions options;
-    std::string json;  // empty: none; "-": stdout
+    std::string json;          // empty: none; "-": stdout
+    std::string debug_folder;  // empty: no pictures
     bool quiet = false;
 };
 int run_encode(const EncodeCommand& command);

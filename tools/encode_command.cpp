@@ -6,11 +6,13 @@
 #include "tools/input.h"
 #include "tools/progress.h"
 #include "tools/report_json.h"
+#include "tools/state_pictures.h"
 
 namespace gim {
 namespace {
 
-Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress) {
+Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress,
+                             const Observer& observer) {
     switch (input.kind) {
         case Input::Kind::kGim:
             return Error{Stage::kInput,
@@ -21,7 +23,7 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
         case Input::Kind::kMesh:
             break;
     }
-    return encode(input.mesh, options, progress);
+    return encode(input.mesh, options, progress, observer);
 }
 
 std::string format_line(const char* label, const std::string& value) {
@@ -47,13 +49,20 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
     const std::string side = std::to_string(report.side);
-    print_line(format_line("image", side + " x " + side));
+    print_line(format_line(
+        "image", side + " x " + side + (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
     print_line(format_line("bytes", with_thousands(report.file_bytes)));
     print_line(format_line("bits per vertex", fixed(report.bits_per_vertex, 3)));
     print_line(format_line("bits per sample", fixed(report.bits_per_sample, 3)));
     print_line(format_line("PSNR", fixed(report.error.psnr, 2) + " dB"));
     print_line(format_line("RMS input to decoded", scientific(report.error.rms_to_test)));
     print_line(format_line("RMS decoded to input", scientific(report.error.rms_to_reference)));
+    for (const LevelReport& level : report.levels) {
+        if (level.level == 0) continue;
+        print_line(format_line(("  level " + std::to_string(level.level)).c_str(),
+                               fixed(level.psnr, 2) + " dB, " + with_thousands(level.vertices) + " vertices, first " +
+                                   with_thousands(level.prefix_bytes) + " bytes"));
+    }
     for (const StageTime& time : report.times) {
         print_line(format_line(("  " + time.stage).c_str(), fixed(time.seconds, 2) + " s"));
     }
@@ -82,10 +91,21 @@ int run_encode(const EncodeCommand& command) {
     Result<Input> input = read_input(command.input);
     if (!input.ok()) return report_error(command.input, input.error());
 
+    StatePictures pictures(command.debug_folder);
+    const bool draws = !command.debug_folder.empty();
+    if (draws) {
+        const Result<bool> made = pictures.make_folder();
+        if (!made.ok()) return report_error(command.debug_folder, made.error());
+    }
     Result<Encoded> encoded = [&] {
         ProgressPrinter printer(command.quiet);
-        return encode_input(input.value(), command.options, printer.callback());
+        return encode_input(input.value(), command.options, printer.callback(),
+                            draws ? pictures.observer() : Observer());
     }();
+    if (draws) {  // of a failed run too: there they are needed most
+        const Result<bool> drawn = pictures.finish();
+        if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());
+    }
     if (!encoded.ok()) return report_error(command.input, encoded.error());
 
     const Result<bool> written = write_file(command.output, encoded.value().bytes);

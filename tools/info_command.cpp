@@ -153,6 +153,10 @@ void print_json(const std::string& path, const Description& d) {
         if (chunk.level >= 0) entry["level"] = chunk.level;
         chunks.push_back(entry);
     }
+    ordered_json psnr = ordered_json::array();
+    for (uint32_t level = 0; level < d.info.level_count && d.info.level_psnr[level] > 0; ++level) {
+        psnr.push_back(d.info.level_psnr[level]);
+    }
     const ordered_json document = {{"file", path},
                                    {"version", d.info.version},
                                    {"layout", layout_name(d.info.layout)},
@@ -166,6 +170,7 @@ void print_json(const std::string& path, const Description& d) {
                                    {"samples", d.info.sample_count},
                                    {"bits_per_sample", bits_per_sample(d.info)},
                                    {"level_count", d.info.level_count},
+                                   {"level_psnr", psnr},
                                    {"images", images},
                                    {"chunks", chunks},
                                    {"text", d.text},
@@ -182,6 +187,13 @@ void print_text(const std::string& path, const Description& d) {
     std::printf("  %s bytes, %u image%s, %s samples, %.3f bits per sample\n", with_thousands(d.actual_size).c_str(),
                 info.image_count, info.image_count == 1 ? "" : "s", with_thousands(info.sample_count).c_str(),
                 bits_per_sample(info));
+    if (info.level_psnr[0] > 0) {
+        std::printf("  measured by the encoder, in dB:");
+        for (uint32_t level = 0; level < info.level_count && info.level_psnr[level] > 0; ++level) {
+            std::printf("%s level %u %.1f", level > 0 ? "," : "", level, static_cast<double>(info.level_psnr[level]));
+        }
+        std::printf("\n");
+    }
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
         std::printf("image %zu: %u cut paths, %u surface points on the ring\n", i, image.paths, image.seam_points);

@@ -21,11 +21,16 @@ constexpr uint32_t kSupersampling = 3;
 constexpr double kDistance = 4.5;  // of the eye from the centre, in radii of the model: a long lens
 constexpr double kFilled = 0.92;   // of the picture's side that the model fills
 constexpr uint32_t kCaptionHeight = 40;
+constexpr double kLineBias = 1e-3;  // nearness (1 / radii) by which a line is lifted off the surface it lies on
 const Vector3d kFront(0.80, 0.76, 0.70);
 const Vector3d kBack(0.80, 0.35, 0.28);
 const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
 const Vector3d kBackgroundBottom(0.86, 0.875, 0.90);
 const Vector3d kWire(0.10, 0.14, 0.22);
+const Vector3d kLine(0.85, 0.08, 0.10);
+const Vector3d kSqueezed(0.13, 0.35, 0.75);
+const Vector3d kFair(0.96, 0.96, 0.95);
+const Vector3d kSpread(0.90, 0.47, 0.10);
 
 Vector3d at(const TriangleMesh& mesh, uint32_t v) {
     return {mesh.positions[v][0], mesh.positions[v][1], mesh.positions[v][2]};
@@ -124,12 +129,13 @@ struct Canvas {
 struct Corner {
     Vector2d pixel;
     double nearness = 0;
-    Vector3d normal;
 };
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-void draw_triangle(const std::array<Corner, 3>& corners, bool wire, Canvas& canvas) {
+// paint(weights): linear light at a point given by the weights of the corners.
+template <class Paint>
+void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint& paint, Canvas& canvas) {
     const Vector2d& a = corners[0].pixel;
     const Vector2d& b = corners[1].pixel;
     const Vector2d& c = corners[2].pixel;
@@ -151,19 +157,51 @@ void draw_triangle(const std::array<Corner, 3>& corners, bool wire, Canvas& canv
                                                   cross(a - p, b - p) / doubled_area};
             if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) continue;
             double nearness = 0;
-            Vector3d normal = Vector3d::Zero();
             double edge_distance = std::numeric_limits<double>::infinity();
             for (size_t k = 0; k < 3; ++k) {
                 nearness += weight[k] * corners[k].nearness;
-                normal += weight[k] * corners[k].normal;
                 edge_distance = std::min(edge_distance, weight[k] * height[k]);
             }
             const size_t i = size_t{y} * canvas.side + x;
             if (static_cast<float>(nearness) <= canvas.depth[i]) continue;
             canvas.depth[i] = static_cast<float>(nearness);
             const bool on_edge = wire && edge_distance < 0.4 * kSupersampling;
-            canvas.colour[i] = (on_edge ? Vector3d(kWire.array().pow(2.2)) : shade(normal)).cast<float>();
+            canvas.colour[i] = (on_edge ? Vector3d(kWire.array().pow(2.2)) : Vector3d(paint(weight))).cast<float>();
         }
+    }
+}
+
+// Where lines pass: 0 nowhere, 1 behind the surface, 2 in front.
+using LineMask = std::vector<uint8_t>;
+
+// A line of the width of a pen, seen over what is not nearer than it by more than kLineBias.
+void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, LineMask& mask) {
+    constexpr double kPen = 0.9 * kSupersampling;
+    const double length = (to.pixel - from.pixel).norm();
+    if (!std::isfinite(length)) return;
+    const auto steps = static_cast<uint32_t>(std::min(length, 4.0 * canvas.side)) + 1;
+    const auto last = static_cast<double>(canvas.side) - 1;
+    for (uint32_t i = 0; i <= steps; ++i) {
+        const double t = static_cast<double>(i) / steps;
+        const Vector2d p = (1 - t) * from.pixel + t * to.pixel;
+        const auto nearness = static_cast<float>((1 - t) * from.nearness + t * to.nearness + kLineBias);
+        for (double y = std::ceil(std::max(p.y() - kPen, 0.0)); y <= std::min(p.y() + kPen, last); ++y) {
+            for (double x = std::ceil(std::max(p.x() - kPen, 0.0)); x <= std::min(p.x() + kPen, last); ++x) {
+                if ((Vector2d(x, y) - p).squaredNorm() > kPen * kPen) continue;
+                const size_t k = static_cast<size_t>(y) * canvas.side + static_cast<size_t>(x);
+                mask[k] = std::max<uint8_t>(mask[k], nearness >= canvas.depth[k] ? 2 : 1);
+            }
+        }
+    }
+}
+
+// Hidden lines shine through.
+void paint_lines(const LineMask& mask, Canvas& canvas) {
+    const Eigen::Vector3f line = Vector3d(kLine.array().pow(2.2)).cast<float>();
+    for (size_t k = 0; k < mask.size(); ++k) {
+        if (mask[k] == 0) continue;
+        const float part = mask[k] == 2 ? 1.0F : 0.3F;
+        canvas.colour[k] = (1 - part) * canvas.colour[k] + part * line;
     }
 }
 
@@ -212,7 +250,7 @@ void draw_caption(Picture& picture, const std::string& text, uint32_t left, uint
 
 }  // namespace
 
-Picture render_mesh(const TriangleMesh& mesh, const View& view) {
+Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines) {
     Canvas canvas(view.size);
     const Bounds bounds = bounds_of(mesh);
     const Vector3d extent = bounds.high - bounds.low;
@@ -244,26 +282,69 @@ Picture render_mesh(const TriangleMesh& mesh, const View& view) {
     const Vector2d middle = 0.5 * (low + high);
     for (Vector2d& p : pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * canvas.side);
 
+    const auto corner_at = [&](uint32_t v) {
+        return Corner{pixels[v], 1 / (kDistance - seen[v].z())};  // 1 / distance is linear over the picture
+    };
     for (const auto& t : mesh.triangles) {
         if (!is_finite(mesh, t)) continue;
         const Vector3d facet = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
         std::array<Corner, 3> corners;
+        std::array<Vector3d, 3> normal = {facet, facet, facet};
         for (size_t k = 0; k < 3; ++k) {
-            // 1 / distance is linear over the picture.
-            corners[k] = {pixels[t[k]], 1 / (kDistance - seen[t[k]].z()), facet};
+            corners[k] = corner_at(t[k]);
             if (view.flat) continue;
-            const Vector3d& normal = normals[t[k]];
             // Which side is seen is decided per triangle: an interpolated normal may lean over the silhouette.
-            corners[k].normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : facet;
+            if (normals[t[k]].norm() > 0) normal[k] = normals[t[k]].normalized();
         }
         const Vector3d to_eye = Vector3d(0, 0, kDistance) - seen[t[0]];
         const bool front = facet.dot(to_eye) >= 0;
-        for (Corner& corner : corners) {
-            const double z = corner.normal.z();
-            if (front && z < 0) corner.normal.z() = 0;
-            if (!front && z >= 0) corner.normal.z() = -1e-9;
+        for (Vector3d& n : normal) {
+            if (front && n.z() < 0) n.z() = 0;
+            if (!front && n.z() >= 0) n.z() = -1e-9;
         }
-        draw_triangle(corners, view.wire, canvas);
+        const auto paint = [&](const std::array<double, 3>& weight) {
+            return shade(weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2]);
+        };
+        draw_triangle(corners, view.wire, paint, canvas);
+    }
+    if (!lines.empty()) {
+        LineMask mask(canvas.colour.size(), 0);
+        for (const auto& line : lines) trace_line(corner_at(line[0]), corner_at(line[1]), canvas, mask);
+        paint_lines(mask, canvas);
+    }
+    return average(canvas);
+}
+
+Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 2>> uv, uint32_t size) {
+    Canvas canvas(size);
+    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
+    Vector2d high = -low;
+    for (const auto& p : uv) {
+        low = low.cwiseMin(Vector2d(p[0], p[1]));
+        high = high.cwiseMax(Vector2d(p[0], p[1]));
+    }
+    const double scale = kFilled * canvas.side / std::max((high - low).maxCoeff(), 1e-12);
+    const auto corner_at = [&](uint32_t v) {
+        const Vector2d p(uv[v][0], uv[v][1]);
+        return Corner{scale * (p - 0.5 * (low + high)) + Vector2d::Constant(0.5 * canvas.side), 0};
+    };
+    const auto space_area = [&](const std::array<uint32_t, 3>& t) {
+        return (at(mesh, t[1]) - at(mesh, t[0])).cross(at(mesh, t[2]) - at(mesh, t[0])).norm();
+    };
+    const auto plane_area = [&](const std::array<uint32_t, 3>& t) {
+        const Vector2d a(uv[t[0]][0], uv[t[0]][1]), b(uv[t[1]][0], uv[t[1]][1]), c(uv[t[2]][0], uv[t[2]][1]);
+        return std::abs(cross(b - a, c - a));
+    };
+    double space = 0, plane = 0;
+    for (const auto& t : mesh.triangles) space += space_area(t), plane += plane_area(t);
+    for (const auto& t : mesh.triangles) {
+        const double share = plane_area(t) * space / std::max(space_area(t) * plane, 1e-300);
+        const double octaves = std::clamp(std::log2(std::max(share, 1e-30)) / 5, -1.0, 1.0);
+        const Vector3d end = octaves < 0 ? kSqueezed : kSpread;
+        const Vector3d colour = ((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end).array().pow(2.2);
+        const std::array<Corner, 3> corners = {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])};
+        draw_triangle(
+            corners, mesh.triangles.size() < 10000, [&](const auto&) { return colour; }, canvas);
     }
     return average(canvas);
 }
@@ -325,6 +406,23 @@ Picture place_side_by_side(std::span<const Panel> panels) {
         draw_caption(all, panel.caption, left, panel.picture.width, caption_top);
         left += panel.picture.width;
     }
+    return all;
+}
+
+Picture place_below(const Picture& top, const Picture& bottom) {
+    Picture all;
+    all.width = std::max(top.width, bottom.width);
+    all.height = top.height + bottom.height;
+    all.rgb.assign(size_t{3} * all.width * all.height, 255);
+    const auto copy = [&](const Picture& picture, uint32_t first_row) {
+        const size_t row_bytes = size_t{3} * picture.width;
+        for (uint32_t row = 0; row < picture.height; ++row) {
+            std::copy_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
+                        all.rgb.begin() + static_cast<std::ptrdiff_t>(size_t{3} * (first_row + row) * all.width));
+        }
+    };
+    copy(top, 0);
+    copy(bottom, top.height);
     return all;
 }
 

@@ -30,8 +30,12 @@ struct View {
 };
 
 // The whole mesh, filling the picture. Faces seen from behind are reddish, so that holes and flipped faces show.
-// Triangles with a non-finite corner are left out.
-Picture render_mesh(const TriangleMesh& mesh, const View& view);
+// Triangles with a non-finite corner are left out. `lines`: edges of the mesh, in red, paler behind the surface.
+Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines = {});
+
+// A map of the mesh to the plane (uv per vertex, v downwards), filling the picture. Blue: the surface is squeezed there, it
+// gets fewer samples than its share; white: its share; orange: more.
+Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 2>> uv, uint32_t size);
 
 // The geometry images themselves, x y z of the bounding box as red green blue; several images as tiles.
 Picture render_images(std::span<const DecodedImage> images, uint32_t size);
@@ -42,6 +46,8 @@ struct Panel {
 };
 // Panels of equal height from left to right, captions below.
 Picture place_side_by_side(std::span<const Panel> panels);
+// Pictures of equal width from top to bottom.
+Picture place_below(const Picture& top, const Picture& bottom);
 
 Result<Bytes> write_png(const Picture& picture);
 

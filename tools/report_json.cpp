@@ -34,11 +34,21 @@ ordered_json to_json(const Comparison& comparison) {
 ordered_json to_json(const EncodeReport& report) {
     ordered_json times = ordered_json::array();
     for (const StageTime& time : report.times) times.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
+    ordered_json levels = ordered_json::array();
+    for (const LevelReport& level : report.levels) {
+        levels.push_back({{"level", level.level},
+                          {"side", level.side},
+                          {"vertices", level.vertices},
+                          {"triangles", level.triangles},
+                          {"prefix_bytes", level.prefix_bytes},
+                          {"psnr", level.psnr}});
+    }
     return {{"input_vertices", report.input_vertices},
             {"input_triangles", report.input_triangles},
             {"welded_vertices", report.welded_vertices},
             {"removed_triangles", report.removed_triangles},
             {"topology", to_json(report.topology)},
+            {"images", report.images},
             {"side", report.side},
             {"node_side", report.node_side},
             {"cut_paths", report.cut_paths},
@@ -52,6 +62,7 @@ ordered_json to_json(const EncodeReport& report) {
             {"file_bytes", report.file_bytes},
             {"sideband_bytes", report.sideband_bytes},
             {"error", to_json(report.error)},
+            {"levels", levels},
             {"times", times},
             {"seconds", report.seconds}};
 }

@@ -206,6 +206,11 @@ void write_valid(Writer& out) {
         out.valid("schema-33-lossy-" + std::to_string(genus), encode({hill(33, s, 6, 14)}, lossy(12, 17, 5)));
     }
 
+    CodingParameters measured = lossy(12, 5, 6);
+    measured.level_psnr = true;
+    out.valid("level-psnr",
+              set_level_psnr(encode({hill(17, folded_sides(), 2, 15)}, measured), std::vector<double>{73.9, 60.25, 0}));
+
     CodingParameters text = lossless(8, 3);
     text.text = "a short text";
     out.valid("text-plain", encode({hill(5, open_square(), 0, 1)}, text));
@@ -236,7 +241,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     out.invalid("not-gim.raw-floats", to_bytes(std::vector<float>(75, 1.0f)));
     out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
     out.invalid("unsupported-version.layout-1", with_parts(plain, [](Parts& p) { p.header.layout = 1; }));
-    out.invalid("unsupported-version.reserved-flag", with_parts(plain, [](Parts& p) { p.header.layout = 0x08; }));
+    out.invalid("unsupported-version.reserved-flag", with_parts(plain, [](Parts& p) { p.header.layout = 0x10; }));
     out.invalid("unsupported-version.critical-chunk",
                 with_parts(plain, [](Parts& p) { insert_chunk(&p, 0, 77, false, {1}); }));
     out.invalid("checksum.index", changed(plain, 12, static_cast<uint8_t>(plain[12] ^ 1)));

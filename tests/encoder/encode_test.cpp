@@ -56,6 +56,82 @@ TEST(Encode, EverySurfaceOfTheCorpusComesBackWithItsTopology) {
     }
 }
 
+TEST(Encode, EachComponentBecomesAnImageAsDenseAsTheOthers) {
+    // A sphere, and another of a quarter of its radius beside it.
+    TriangleMesh both = corpus::sphere(16);
+    const TriangleMesh one = both;
+    const auto base = static_cast<uint32_t>(both.positions.size());
+    for (const auto& p : one.positions) both.positions.push_back({0.25 * p[0] + 5, 0.25 * p[1], 0.25 * p[2]});
+    for (const auto& t : one.triangles) both.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    for (const RateTarget& rate :
+         {RateTarget{RateTarget::Kind::kLossless, 0}, RateTarget{RateTarget::Kind::kQuality, 50}}) {
+        EncodeOptions options = small_options();
+        options.rate = rate;
+        const auto encoded = encode(both, options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_EQ(encoded.value().report.images, 2u);
+        EXPECT_EQ(encoded.value().report.side, 65u);
+        gim_info info;
+        const std::vector<uint8_t>& bytes = encoded.value().bytes;
+        ASSERT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
+        gim_level_info shape;
+        ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 1, 0, &shape), GIM_OK);
+        EXPECT_EQ(shape.side, 17u);
+        expect_topology_at_every_level(encoded.value(), "two spheres");
+    }
+}
+
+TEST(Encode, PiecesOfTheCorpusComeBackWithTheirTopology) {
+    const auto encoded = encode(corpus::corpus().named("four-pieces").mesh(), small_options());
+    ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+    EXPECT_EQ(encoded.value().report.images, 4u);
+    expect_topology_at_every_level(encoded.value(), "four-pieces");
+}
+
+TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
+    const TriangleMesh mesh = corpus::torus(60, 30, 1, 0.4);
+    const auto encoded = encode(mesh, small_options());
+    ASSERT_TRUE(encoded.ok());
+    const std::vector<uint8_t>& bytes = encoded.value().bytes;
+    const std::vector<LevelReport>& levels = encoded.value().report.levels;
+    gim_info info;
+    ASSERT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
+    ASSERT_EQ(levels.size(), 3u);  // 65, 33, 17
+    for (uint32_t level = 0; level < levels.size(); ++level) {
+        const auto comparison = compare(mesh, as_input(decode_surface(bytes, level).value()), {});
+        ASSERT_TRUE(comparison.ok());
+        EXPECT_NEAR(levels[level].psnr, comparison.value().psnr, 0.1);
+        EXPECT_LE(info.level_psnr[level], levels[level].psnr);
+        EXPECT_GT(info.level_psnr[level], levels[level].psnr - 0.5);
+        EXPECT_EQ(levels[level].side, (64u >> level) + 1);
+        gim_level_info shape;
+        ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape), GIM_OK);
+        EXPECT_EQ(levels[level].prefix_bytes, shape.prefix_size);
+        EXPECT_EQ(levels[level].vertices, shape.vertex_count);
+    }
+    EXPECT_EQ(info.level_psnr[3], 0.0f);
+}
+
+TEST(Encode, ObserverSeesStatesWhoseMapsFitTheirMeshes) {
+    EncodeOptions options = small_options();
+    options.density = true;
+    options.fit = FitStrength::kStiff;
+    std::vector<std::string> names;
+    const auto watched = encode(corpus::limbed_blob(24), options, {}, [&](const Snapshot& state) {
+        names.push_back(state.name);
+        EXPECT_EQ(state.uv.size(), state.mesh.positions.size()) << state.name;
+        EXPECT_FALSE(state.cut.empty()) << state.name;
+        for (const auto& edge : state.cut) EXPECT_LT(std::max(edge[0], edge[1]), state.mesh.positions.size());
+        for (const auto& p : state.uv) EXPECT_LE(std::max(std::abs(p[0]), std::abs(p[1])), 1 + 1e-9) << state.name;
+    });
+    ASSERT_TRUE(watched.ok()) << watched.error().message;
+    ASSERT_GE(names.size(), 5u);
+    EXPECT_EQ(names.front(), "cut-00");
+    EXPECT_EQ(names.back(), "image-fitted");
+    EXPECT_EQ(watched.value().bytes,
+              encode(corpus::limbed_blob(24), options).value().bytes);  // looking changes nothing
+}
+
 TEST(Encode, LossyFilesKeepTheTopologyToo) {
     EncodeOptions options = small_options();
     options.rate = {RateTarget::Kind::kQuality, 30};

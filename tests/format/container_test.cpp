@@ -97,6 +97,18 @@ TEST(Container, IndexSizeCountsItselfWhenItTakesTwoBytes) {
     }
 }
 
+TEST(Container, PsnrOfLevelsComesBackCoarsestFirst) {
+    Header h = small_header(), back;
+    const std::vector<uint8_t> psnr = {80, 147};
+    h.level_psnr = psnr;
+    const auto bytes = serialize_header(h, kChunks);
+    ASSERT_EQ(parse(bytes, &back), Status::kOk);
+    EXPECT_EQ(std::vector<uint8_t>(back.level_psnr.begin(), back.level_psnr.end()), psnr);
+    EXPECT_EQ(back.chunk_count, 3u);
+    h.level_psnr = {};
+    EXPECT_EQ(serialize_header(h, kChunks).size() + 2, bytes.size());
+}
+
 TEST(Container, EveryTruncationAsksForMore) {
     const auto bytes = serialize_header(small_header(), kChunks);
     Header h;

@@ -259,10 +259,8 @@ TEST_F(Cli, HeadersOfGimFilesThatClaimTooMuchAreRefused) {
 }
 
 TEST_F(Cli, MeshesThatThisLayoutCannotTakeAreDescribed) {
-    for (const auto& [name, word] : std::vector<std::pair<std::string, std::string>>{{"four-pieces", "component"},
-                                                                                     {"edge-of-three", "non-manifold"},
-                                                                                     {"not-a-number", "finite"},
-                                                                                     {"moebius", ""}}) {
+    for (const auto& [name, word] : std::vector<std::pair<std::string, std::string>>{
+             {"edge-of-three", "non-manifold"}, {"not-a-number", "finite"}, {"moebius", ""}}) {
         const std::string input = folder.file(name + ".obj");
         save_corpus_mesh(name, input);
         const std::string output = folder.file("out.gim");
@@ -272,6 +270,47 @@ TEST_F(Cli, MeshesThatThisLayoutCannotTakeAreDescribed) {
         EXPECT_NE(run.err.find(input), std::string::npos) << run.err;
         EXPECT_NE(run.err.find(word), std::string::npos) << name << ": " << run.err;
         EXPECT_EQ(load_text(output), "an older file") << name;
+    }
+}
+
+TEST_F(Cli, DebugFolderHoldsAPictureOfEveryStateAndTheirStrip) {
+    const std::string input = folder.file("four-pieces.obj");
+    save_corpus_mesh("four-pieces", input);
+    const std::string pictures = folder.file("new/pictures");
+    const Outcome run = gim({"encode", input, folder.file("out.gim"), "--size", "33", "--node-side", "9", "--debug-dir",
+                             pictures, "--quiet"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto has = [&](const std::string& part) {
+        for (const auto& entry : std::filesystem::directory_iterator(pictures)) {
+            if (entry.path().filename().string().find(part) != std::string::npos && entry.file_size() > 1000)
+                return true;
+        }
+        return false;
+    };
+    for (const char* part : {"strip.png", "component-0-cut-00.png", "component-3-map-even.png",
+                             "component-1-map-density.png", "component-2-image-sampled.png", "image-fitted.png"}) {
+        EXPECT_TRUE(has(part)) << part;
+    }
+    save(folder.file("file"), "");
+    const Outcome blocked =
+        gim({"encode", input, folder.file("other.gim"), "--debug-dir", folder.file("file"), "--quiet"});
+    EXPECT_EQ(blocked.status, 1);
+    EXPECT_NE(blocked.err.find("folder"), std::string::npos) << blocked.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("other.gim")));
+}
+
+TEST_F(Cli, EveryLevelsPsnrIsToldByEncodeAndByInfo) {
+    const json report = json::parse(load_text(shared_folder->file("report.json")));
+    const Outcome run = gim({"info", gim_path(), "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json told = json::parse(run.out)["level_psnr"];
+    ASSERT_EQ(report["levels"].size(), told.size());
+    ASSERT_GT(told.size(), 2u);
+    for (size_t level = 0; level < told.size(); ++level) {
+        const double measured = report["levels"][level]["psnr"];
+        EXPECT_EQ(told[level].get<double>(), std::floor(2 * measured) / 2) << level;
+        const Outcome compared = gim({"compare", mesh_path(), gim_path(), "--level", std::to_string(level), "--json"});
+        EXPECT_NEAR(json::parse(compared.out)["comparison"]["psnr"].get<double>(), measured, 0.1) << level;
     }
 }
 

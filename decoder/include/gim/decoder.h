@@ -51,6 +51,7 @@ GIM_API const char* gim_status_text(gim_status status);
 
 enum { GIM_LAYOUT_GIM = 0, GIM_LAYOUT_MCGIM = 1, GIM_LAYOUT_TILES = 2 };
 enum { GIM_CODING_LOSSLESS = 0, GIM_CODING_LOSSY = 1 };
+enum { GIM_MAX_LEVELS = 14 };
 
 /* What the caller is willing to take. NULL where a gim_limits* is asked for means these defaults. */
 typedef struct gim_limits {
@@ -74,7 +75,9 @@ typedef struct gim_info {
     float step;            /* object units per quantization step, > 0 */
     float quantizer;       /* lossy: quantizer step of a coefficient of unit norm, in quantization steps; else 0 */
     uint32_t index_size;   /* bytes of header and index; a prefix of this length suffices for gim_read_info */
-    gim_limits limits;     /* in force for later calls */
+    float level_psnr[GIM_MAX_LEVELS]; /* dB, as the encoder measured each level against its input, rounded down to half
+                                         decibels; level 0 first; 0: not told */
+    gim_limits limits;                /* in force for later calls */
 } gim_info;
 
 /* Reads header and index, verifies their checksum. Cost O(index). */

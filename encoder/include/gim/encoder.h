@@ -110,7 +110,8 @@ enum class FitStrength {
 
 struct EncodeOptions {
     Layout layout = Layout::kGim;
-    uint32_t side = 257;      // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory
+    uint32_t side = 257;      // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory.
+                              // Of several components the largest gets it, the others less, by their area
     uint32_t node_side = 17;  // grid on which cut-nodes lie, so that all coarser levels down to it stay closed;
                               // made finer by the encoder where the cut has too many nodes for it
     uint32_t bits = 12;       // quantizer: bits per coordinate of the bounding box, 8..20
@@ -119,6 +120,15 @@ struct EncodeOptions {
     bool density = true;  // more samples where a first sampling leaves more error; false: spread evenly
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the bytes do not depend on it
+};
+
+// One level of the file: all images, each at this level or at the coarsest that its seams can close.
+struct LevelReport {
+    uint32_t level = 0;                    // 0: full resolution
+    uint32_t side = 0;                     // of the largest image
+    uint64_t vertices = 0, triangles = 0;  // of the decoded surface
+    uint64_t prefix_bytes = 0;             // of the file, that this level needs
+    double psnr = 0;                       // dB, decoded surface against the input mesh
 };
 
 struct StageTime {
@@ -131,14 +141,16 @@ struct EncodeReport {
     uint64_t input_vertices = 0, input_triangles = 0;     // as read
     uint64_t welded_vertices = 0, removed_triangles = 0;  // by cleaning
     TopologySummary topology;                             // of the cleaned mesh
-    uint32_t side = 0, node_side = 0, cut_paths = 0;
-    double cut_length = 0;                            // object units
+    uint32_t images = 0;                                  // one per component
+    uint32_t side = 0, node_side = 0, cut_paths = 0;      // side: of the largest; paths: of all
+    double cut_length = 0;                                // object units
     double stretch_efficiency = 0;                    // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
     uint64_t folds = 0, folds_before_fit = 0;         // image faces that look away from the input's surface
     uint64_t flipped_triangles = 0;                   // in the parametrization; always 0 in a successful run
     double bits_per_sample = 0, bits_per_vertex = 0;  // file bits over samples / input vertices
     uint64_t file_bytes = 0, sideband_bytes = 0;
-    Comparison error;  // decoded level 0 against the input mesh
+    Comparison error;                 // decoded level 0 against the input mesh
+    std::vector<LevelReport> levels;  // finest first
     std::vector<StageTime> times;
     double seconds = 0;
 };
@@ -148,8 +160,20 @@ struct Encoded {
     EncodeReport report;
 };
 
-// Mesh to .gim. The mesh must clean up to a connected, orientable 2-manifold (kGim).
-Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress = {});
+// A state on the way, for pictures: a mesh opened along its cut, and where its vertices lie in the plane.
+struct Snapshot {
+    std::string name;                          // for files: lower case, digits and hyphens
+    std::string caption;                       // for people: what was done, and its figures
+    TriangleMesh mesh;                         // vertices on the cut once per side of it
+    std::vector<std::array<uint32_t, 2>> cut;  // edges of `mesh` along the cut and the input's boundaries
+    std::vector<std::array<double, 2>> uv;     // per vertex; unit disk for the cut search, unit square afterwards
+};
+// Called with each state while encode() runs; making them costs about a tenth of the run. Never called concurrently.
+using Observer = std::function<void(const Snapshot& state)>;
+
+// Mesh to .gim. The mesh must clean up to an orientable 2-manifold; each connected component becomes one image (kGim).
+Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress = {},
+                       const Observer& observer = {});
 
 // An existing geometry image to .gim: side*side*3 floats, planar (all x, all y, all z), sample (i, j) at j*side + i.
 // Boundary samples within `weld_tolerance` of each other (object units) are glued where that gives a closed surface.

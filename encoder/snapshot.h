@@ -1,0 +1,19 @@
+// States on the way for the caller's pictures (Observer).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "encoder/geometry_image.h"
+#include "encoder/open_mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// An opened mesh and its map.
+Snapshot make_snapshot(std::string name, std::string caption, const OpenedMesh& opened, const std::vector<Vec2>& uv);
+
+// A geometry image as a surface; the rim of the square is the cut.
+Snapshot make_snapshot(std::string name, std::string caption, const GeometryImage& image);
+
+}  // namespace gim

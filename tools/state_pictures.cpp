@@ -1,0 +1,58 @@
+#include "tools/state_pictures.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "tools/file.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kPixels = 360;
+constexpr size_t kMostInStrip = 8;
+
+Panel draw(const Snapshot& state) {
+    const View view = {.size = kPixels};
+    const Picture surface = render_mesh(state.mesh, view, state.cut);
+    return {place_below(surface, render_map(state.mesh, state.uv, kPixels)), state.caption};
+}
+
+}  // namespace
+
+Result<bool> StatePictures::make_folder() const {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) return Error{Stage::kWrite, "cannot make the folder: " + error.message()};
+    return true;
+}
+
+Observer StatePictures::observer() {
+    return [this](const Snapshot& state) { add(state); };
+}
+
+void StatePictures::add(const Snapshot& state) {
+    if (!state_.ok()) return;
+    char number[16];
+    std::snprintf(number, sizeof(number), "%02zu-", panels_.size());
+    panels_.push_back(draw(state));
+    state_ = save(number + state.name + ".png", place_side_by_side({&panels_.back(), 1}));
+}
+
+Result<bool> StatePictures::finish() {
+    if (!state_.ok() || panels_.empty()) return state_;
+    const size_t count = std::min(panels_.size(), kMostInStrip);
+    std::vector<Panel> chosen;
+    for (size_t i = 0; i < count; ++i) {
+        chosen.push_back(panels_[count == 1 ? 0 : i * (panels_.size() - 1) / (count - 1)]);
+    }
+    return save("strip.png", place_side_by_side(chosen));
+}
+
+Result<bool> StatePictures::save(const std::string& name, const Picture& picture) const {
+    const Result<Bytes> png = write_png(picture);
+    if (!png.ok()) return png.error();
+    return write_file(folder_ + "/" + name, png.value());
+}
+
+}  // namespace gim

@@ -1,0 +1,32 @@
+// The states of an encoding as PNGs (gim encode --debug-dir): the surface with its cut, and the map below it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gim/encoder.h"
+#include "tools/render.h"
+
+namespace gim {
+
+class StatePictures {
+  public:
+    // `folder` is made where it is missing. Its files of earlier runs are overwritten, name by name.
+    explicit StatePictures(std::string folder) : folder_(std::move(folder)) {}
+
+    Result<bool> make_folder() const;
+    // Draws each state to NN-name.png. The first failure is kept, later states are then left out.
+    Observer observer();
+    // strip.png: all states (a dozen of them, spread, where there are more) from left to right. The first failure of all.
+    Result<bool> finish();
+
+  private:
+    void add(const Snapshot& state);
+    Result<bool> save(const std::string& name, const Picture& picture) const;
+
+    std::string folder_;
+    std::vector<Panel> panels_;
+    Result<bool> state_ = true;
+};
+
+}  // namespace gim
