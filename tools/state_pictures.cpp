@@ -9,13 +9,14 @@
 namespace gim {
 namespace {
 
-constexpr uint32_t kPixels = 360;
+constexpr uint32_t kPixels = 480;       // of a picture of its own
+constexpr uint32_t kStripPixels = 200;  // of one in the strip
 constexpr size_t kMostInStrip = 8;
 
-Panel draw(const Snapshot& state) {
-    const View view = {.size = kPixels};
+Panel draw(const Snapshot& state, uint32_t pixels) {
+    const View view = {.size = pixels};
     const Picture surface = render_mesh(state.mesh, view, state.cut);
-    return {place_below(surface, render_map(state.mesh, state.uv, kPixels)), state.caption};
+    return {place_below(surface, render_map(state.mesh, state.uv, pixels)), state.caption};
 }
 
 }  // namespace
@@ -35,8 +36,9 @@ void StatePictures::add(const Snapshot& state) {
     if (!state_.ok()) return;
     char number[16];
     std::snprintf(number, sizeof(number), "%02zu-", panels_.size());
-    panels_.push_back(draw(state));
-    state_ = save(number + state.name + ".png", place_side_by_side({&panels_.back(), 1}));
+    const Panel panel = draw(state, kPixels);
+    state_ = save(number + state.name + ".png", place_side_by_side({&panel, 1}));
+    panels_.push_back(draw(state, kStripPixels));
 }
 
 Result<bool> StatePictures::finish() {

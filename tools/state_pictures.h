@@ -17,7 +17,7 @@ class StatePictures {
     Result<bool> make_folder() const;
     // Draws each state to NN-name.png. The first failure is kept, later states are then left out.
     Observer observer();
-    // strip.png: all states (a dozen of them, spread, where there are more) from left to right. The first failure of all.
+    // strip.png: all states (eight of them, spread, where there are more) from left to right. The first failure of all.
     Result<bool> finish();
 
   private:
