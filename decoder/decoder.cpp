@@ -116,6 +116,8 @@ const char* gim_status_text(gim_status status) {
             return "damaged: a checksum does not match";
         case Status::kNoSuchLevel:
             return "no such level: coarser than the coarsest one of this image";
+        case Status::kNoSuchPlane:
+            return "no such plane: the file has no normals or colours of their own";
     }
     return "unknown status";
 }
@@ -228,6 +230,8 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
     if (c.type == ChunkType::kSeams) name = "SEAM";
     if (c.type == ChunkType::kLevel) name = "LEVL";
     if (c.type == ChunkType::kText) name = "META";
+    if (c.type == ChunkType::kNormals) name = "NRML";
+    if (c.type == ChunkType::kColors) name = "COLR";
     std::memcpy(chunk->name, name, 4);
     chunk->type = static_cast<uint32_t>(c.type);
     chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.level_count - levels_seen) : -1;

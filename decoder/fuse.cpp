@@ -12,9 +12,39 @@ float* sample_at(float* samples, uint32_t side, uint32_t depth, GridPoint p) {
     return samples + (size_t{p.row + depth} * side + p.column + depth) * 3;
 }
 
-// Mean over a class, as first + sum(differences) / members: exact when all are equal.
-// Returns false when no sample changes.
-bool average(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples, const FuseWork& work) {
+// Ring `depth` gets decay * the mean of the outer corrections next to it: three of them, five at its corners.
+void diffuse(uint32_t side, uint32_t depth, float decay, float* samples, const float* outer, float* inner) {
+    const uint32_t edge = side - 1 - 2 * depth;  // samples of this ring per side of the square
+    const uint32_t outer_ring = 4 * (edge + 2);
+    for (uint32_t s = 0; s < 4; ++s) {
+        for (uint32_t t = 0; t < edge; ++t) {
+            const uint32_t count = t == 0 ? 5 : 3;
+            uint32_t o = s * (edge + 2) + (t == 0 ? outer_ring - 2 : t);
+            float sum[3] = {0, 0, 0};
+            for (uint32_t n = 0; n < count; ++n, ++o) {
+                const float* c = outer + size_t{o >= outer_ring ? o - outer_ring : o} * 3;
+                for (int k = 0; k < 3; ++k) sum[k] = sum[k] + c[k];
+            }
+            const uint32_t i = s * edge + t;
+            float* x = sample_at(samples, side, depth, ring_point(edge + 1, i));
+            for (int k = 0; k < 3; ++k) {
+                const float correction = decay * (sum[k] / static_cast<float>(count));
+                inner[size_t{i} * 3 + k] = correction;
+                x[k] = x[k] + correction;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+uint32_t diffusion_width(uint32_t side) {
+    const uint32_t innermost = (side - 1) / 2;  // the depth that is a single sample
+    return std::min(std::max(2u, side / 16), innermost - 1);
+}
+
+bool average_classes(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples,
+                     const FuseWork& work) {
     const uint32_t ring = ring_length(side);
     std::fill_n(work.members, class_count, 0u);
     for (uint32_t i = 0; i < ring; ++i) {
@@ -47,39 +77,8 @@ bool average(uint32_t side, const uint32_t* class_of, uint32_t class_count, floa
     return changed;
 }
 
-// Ring `depth` gets decay * the mean of the outer corrections next to it: three of them, five at its corners.
-void diffuse(uint32_t side, uint32_t depth, float decay, float* samples, const float* outer, float* inner) {
-    const uint32_t edge = side - 1 - 2 * depth;  // samples of this ring per side of the square
-    const uint32_t outer_ring = 4 * (edge + 2);
-    for (uint32_t s = 0; s < 4; ++s) {
-        for (uint32_t t = 0; t < edge; ++t) {
-            const uint32_t count = t == 0 ? 5 : 3;
-            uint32_t o = s * (edge + 2) + (t == 0 ? outer_ring - 2 : t);
-            float sum[3] = {0, 0, 0};
-            for (uint32_t n = 0; n < count; ++n, ++o) {
-                const float* c = outer + size_t{o >= outer_ring ? o - outer_ring : o} * 3;
-                for (int k = 0; k < 3; ++k) sum[k] = sum[k] + c[k];
-            }
-            const uint32_t i = s * edge + t;
-            float* x = sample_at(samples, side, depth, ring_point(edge + 1, i));
-            for (int k = 0; k < 3; ++k) {
-                const float correction = decay * (sum[k] / static_cast<float>(count));
-                inner[size_t{i} * 3 + k] = correction;
-                x[k] = x[k] + correction;
-            }
-        }
-    }
-}
-
-}  // namespace
-
-uint32_t diffusion_width(uint32_t side) {
-    const uint32_t innermost = (side - 1) / 2;  // the depth that is a single sample
-    return std::min(std::max(2u, side / 16), innermost - 1);
-}
-
 void fuse(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples, const FuseWork& work) {
-    if (!average(side, class_of, class_count, samples, work)) return;
+    if (!average_classes(side, class_of, class_count, samples, work)) return;
     const uint32_t width = diffusion_width(side);
     float* outer = work.outer;
     float* inner = work.inner;

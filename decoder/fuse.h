@@ -16,6 +16,11 @@ struct FuseWork {
     float* inner = nullptr;       // and of the next
 };
 
+// Only the mean over each class, as first + sum(differences) / members: exact when all are equal. The corrections are left
+// in work.outer. Returns false when no sample changes. Cost O(side).
+bool average_classes(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples,
+                     const FuseWork& work);
+
 // samples: side*side triples. class_of: per ring sample (ring_classes). Nothing changes where equals are equal already.
 // Cost O(side^2 / 4).
 void fuse(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples, const FuseWork& work);

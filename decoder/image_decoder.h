@@ -7,7 +7,7 @@
 
 #include "decoder/arena.h"
 #include "decoder/fuse.h"
-#include "decoder/synthesis.h"
+#include "decoder/pyramid_decoder.h"
 #include "format/container.h"
 #include "format/seam.h"
 
@@ -15,11 +15,7 @@ namespace gim {
 
 // Everything that decoding one level needs, laid out in the caller's scratch.
 struct ImageWorkspace {
-    BandModels* models = nullptr;
-    BandWork band_work;
-    int32_t* bands[2] = {};  // of the level being decoded and of its parent, in turn
-    void* images[2] = {};    // int32_t or float triples, in turn; the requested level ends in images[0]
-    void* synthesis = nullptr;
+    PyramidWorkspace pyramid;
     uint32_t* class_of = nullptr;
     FuseWork fuse;
     float* normals = nullptr;
@@ -27,9 +23,10 @@ struct ImageWorkspace {
 };
 
 // side: of the level that is asked for.
+FuseWork lay_out_fuse(uint32_t side, Arena* arena);
 ImageWorkspace lay_out(uint32_t side, Arena* arena);
 
-// Decodes the samples of a level, fused, into ws.images[0] as floats in units; fills ws.class_of.
+// Decodes the samples of a level, fused, into ws.pyramid.images[0] as floats in units; fills ws.class_of.
 Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                     const SeamTable& seams, const ImageWorkspace& ws, float** samples);
 

@@ -8,6 +8,7 @@
 
 #include "encoder/clean.h"
 #include "encoder/finish_encoding.h"
+#include "encoder/input_colors.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
 #include "encoder/single_chart.h"
@@ -88,6 +89,8 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
     report.input_vertices = input.positions.size();
     report.input_triangles = input.triangles.size();
 
+    if (std::string c = appearance_complaint(input); !c.empty()) return Error{Stage::kInput, std::move(c)};
+
     clock.begin(Stage::kClean);
     GIM_TRY(cleaned, clean(input, {.require_connected = false}));
     report.welded_vertices = cleaned.report.welded_vertices;
@@ -95,7 +98,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
     report.topology = cleaned.report.topology;
 
     GIM_TRY(images, make_images(cleaned.mesh, options, clock, observer, report));
-    return finish_encoding(images, std::move(cleaned.mesh), options, clock, std::move(encoded));
+    return finish_encoding(images, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
 }
 
 }  // namespace

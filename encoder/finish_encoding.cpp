@@ -6,6 +6,7 @@
 #include "encoder/compare_meshes.h"
 #include "encoder/decode_surface.h"
 #include "encoder/level_report.h"
+#include "encoder/make_planes.h"
 #include "encoder/rate_control.h"
 #include "encoder/result.h"
 #include "encoder/write_gim.h"
@@ -15,7 +16,7 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kLeastSide = 5, kMostSide = 8193;
+constexpr uint32_t kLeastSide = 5, kMostSide = 8193, kMostPlaneSide = 4097;
 constexpr uint32_t kSearchSamples = 120000;
 constexpr int kMostAttempts = 3;
 
@@ -99,6 +100,13 @@ Result<bool> check_options(const EncodeOptions& options) {
     }
     if (options.bits < 8 || options.bits > 20)
         return wrong("the bits must be from 8 to 20; not " + std::to_string(options.bits));
+    const auto is_plane = [](uint32_t side) {
+        return side == 0 || (side >= kLeastSide && side <= kMostPlaneSide && ((side - 1) & (side - 2)) == 0);
+    };
+    if (!is_plane(options.normal_side) || !is_plane(options.color_side.value_or(0)))
+        return wrong("the sides of normal map and colours must be 2^j + 1, from 5 to 4097 (257, 513, ...), or 0");
+    if (options.plane_quality && !(*options.plane_quality >= 0 && *options.plane_quality <= 100))
+        return wrong("the quality of normal map and colours must be from 0 to 100");
     const double value = options.rate.value;
     switch (options.rate.kind) {
         case RateTarget::Kind::kQuality:
@@ -118,15 +126,22 @@ Result<bool> check_options(const EncodeOptions& options) {
     return true;
 }
 
-Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const EncodeOptions& options,
-                                StageClock& clock, Encoded encoded) {
+Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const TriangleMesh& input,
+                                const EncodeOptions& options, StageClock& clock, Encoded encoded) {
     describe_images(images, encoded.report);
     const ReferenceSurface surface(std::move(reference), options.threads);
     CompareOptions compare_options;
     compare_options.threads = options.threads;
 
-    clock.begin(Stage::kCode);
     CodingParameters parameters;
+    const PlaneMaker plane_maker(surface.mesh(), input, options);
+    if (plane_maker.wants_any()) {
+        clock.begin(Stage::kPlanes);
+        GIM_TRY(planes, plane_maker.make(images));
+        parameters.planes = std::move(planes);
+    }
+
+    clock.begin(Stage::kCode);
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
     parameters.level_psnr = true;
@@ -139,6 +154,8 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     GIM_TRY(levels, measure_levels(encoded.bytes, surface, comparison, options.threads));
     encoded.report.levels = std::move(levels);
     encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, encoded.bytes));
+    GIM_TRY(planes, plane_maker.measure(encoded.bytes));
+    encoded.report.planes = std::move(planes);
     clock.end();
 
     describe_file(images, encoded.bytes, encoded.report);

@@ -19,8 +19,9 @@ namespace gim {
 Result<bool> check_options(const EncodeOptions& options);
 
 // Codes the images to the target of the options, judging the decoded surface against `reference`, and completes the report.
-Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const EncodeOptions& options,
-                                StageClock& clock, Encoded encoded);
+// `input`: the mesh as read, for its colours.
+Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const TriangleMesh& input,
+                                const EncodeOptions& options, StageClock& clock, Encoded encoded);
 
 // Runs body on `threads` threads (0: all cores) and turns what it throws into an Error: nothing leaves a public function.
 template <class Body>

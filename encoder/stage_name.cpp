@@ -18,6 +18,8 @@ std::string_view stage_name(Stage stage) {
             return "sample";
         case Stage::kFit:
             return "fit";
+        case Stage::kPlanes:
+            return "planes";
         case Stage::kCode:
             return "code";
         case Stage::kWrite:

@@ -137,6 +137,7 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
     header.bits = parameters.bits;
     header.level_count = largest > base ? largest - base + 1 : 1;
+    writer.planes_ = parameters.planes;
     writer.text_ = parameters.text;
     if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
 
@@ -189,6 +190,7 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
         payload.insert(payload.end(), streams[level].begin(), streams[level].end());
         payloads.push_back(make_payload(ChunkType::kLevel, false, std::move(payload)));
     }
+    for (const CodedPlane& plane : planes_) payloads.push_back(make_payload(plane.type, true, plane.payload));
     if (!text_.empty()) payloads.push_back(make_text_payload(text_));
 
     std::vector<Chunk> chunks;

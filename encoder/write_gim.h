@@ -13,13 +13,20 @@
 
 namespace gim {
 
+// An attribute plane, ready to be stored (format/plane_code.h).
+struct CodedPlane {
+    ChunkType type = ChunkType::kNormals;
+    std::vector<uint8_t> payload;
+};
+
 struct CodingParameters {
     bool lossless = true;  // the quantized image is kept exactly
     uint32_t bits = 12;    // quantizer: bits per coordinate of the largest box extent, 8..20
     double quantizer = 8;  // lossy: step of a coefficient of unit norm, in quantization steps; twice: about 6 dB less
-    uint32_t base_side = 17;  // side of the coarsest stored level; smaller ones cost about 7 bytes each
-    std::string text;         // goes into a META chunk unless empty; UTF-8
-    bool level_psnr = false;  // leaves room in the header for set_level_psnr
+    uint32_t base_side = 17;         // side of the coarsest stored level; smaller ones cost about 7 bytes each
+    std::vector<CodedPlane> planes;  // stored behind the levels
+    std::string text;                // goes into a META chunk unless empty; UTF-8
+    bool level_psnr = false;         // leaves room in the header for set_level_psnr
 };
 
 // All that does not depend on the quantizer, so that a search over quantizers does it once.
@@ -36,6 +43,7 @@ class GimWriter {
 
     Header header_;
     std::vector<uint8_t> side_exponents_, level_psnr_, seams_;
+    std::vector<CodedPlane> planes_;
     std::string text_;
     std::vector<Pyramid<int32_t>> lossless_;
     std::vector<Pyramid<float>> lossy_;

@@ -26,10 +26,11 @@ bool parse_chunk(ByteReader* reader, Chunk* chunk) {
 
 bool in_range(float value, float low, float high) { return value >= low && value <= high; }  // false for a NaN
 
-// The chunks: SEAM once, then level_count times LEVL; META at most once; optional strangers anywhere.
+// The chunks: SEAM once, then level_count times LEVL, then NRML and COLR at most once each; META at most once anywhere;
+// optional strangers anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
-    uint32_t seams = 0, levels = 0, texts = 0;
+    uint32_t seams = 0, levels = 0, texts = 0, normals = 0, colors = 0;
     header->file_size = header->index_size;
     header->chunk_count = 0;
     while (reader.left() > 0) {
@@ -48,6 +49,13 @@ Status check_index(Header* header) {
             case ChunkType::kText:
                 if (!chunk.optional || texts++ > 0) return Status::kMalformed;
                 break;
+            case ChunkType::kNormals:
+            case ChunkType::kColors: {
+                uint32_t& planes = chunk.type == ChunkType::kNormals ? normals : colors;
+                if (!chunk.optional || chunk.zstd || planes++ > 0 || levels != header->level_count)
+                    return Status::kMalformed;
+                break;
+            }
             default:
                 if (!chunk.optional) return Status::kUnsupportedVersion;
         }

@@ -17,6 +17,7 @@ enum class [[nodiscard]] Status : int32_t{
     kScratchTooSmall = 6,     // scratch or output memory is smaller than the size functions say
     kChecksum = 7,            // header or chunk bytes do not match their checksum
     kNoSuchLevel = 8,         // coarser than the coarsest level that the seams can close
+    kNoSuchPlane = 9,         // the file has no plane of that kind
 };
 
 }  // namespace gim

@@ -49,6 +49,9 @@ struct EncodeArguments {
     bool even = false;
     std::optional<double> psnr, quality;
     std::optional<uint64_t> bytes;
+    uint32_t normals = 0;
+    std::optional<uint32_t> colors;
+    std::optional<double> plane_quality;
 };
 
 void add_encode(CLI::App& app, EncodeArguments& a) {
@@ -61,7 +64,8 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         "At most one of --lossless, --psnr, --bytes and --quality; without any, --quality 75.\n\n"
         "  gim encode bunny.ply bunny.gim\n"
         "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
-        "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json");
+        "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
+        "  gim encode bunny.ply bunny.gim --size 129 --normals 512");
     sub->add_option("MESH", a.command.input, "Mesh to read")->required();
     sub->add_option("OUT", a.command.output, ".gim file to write")->required();
     static const std::map<std::string, Layout> layouts = {
@@ -103,7 +107,20 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         ->type_name("auto|none|stiff|loose")
         ->default_str("auto");
     sub->add_flag("--even", a.even, "Spread samples evenly, not denser where the surface curves");
-    sub->add_option("--normals", "Side of a normal map")->check(not_yet("normal maps come with a later release"));
+    sub->add_option("--normals", a.normals, "Side of a normal map of the input, rounded up to 2^j+1; 0: none")
+        ->check(CLI::Range(0, 4097))
+        ->type_name("N");
+    sub->add_option(
+           "--colors", a.colors,
+           "Side of the image that takes the input's vertex colours and textures, rounded up to 2^j+1; 0: none; "
+           "without it, about as fine as they are")
+        ->check(CLI::Range(0, 4097))
+        ->type_name("N");
+    sub->add_option(
+           "--plane-quality", a.plane_quality,
+           "Quality of normal map and colours, as --quality; without it that of --quality, or 90 for --lossless "
+           "(they are lossy all the same)")
+        ->check(finite_range(0, 100, "Q"));
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     sub->add_option("--threads", a.command.options.threads, "0: all cores; the bytes do not depend on it")
         ->check(CLI::Range(0, 1024))
@@ -114,6 +131,21 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
                     "Write pictures of every state to this folder: the cut as it grows, the maps, the samples")
         ->type_name("DIR");
     sub->add_flag("--quiet", a.command.quiet, "No progress and no summary");
+}
+
+// The smallest side that is not below.
+uint32_t plane_side(uint32_t wanted) {
+    if (wanted == 0) return 0;
+    uint32_t side = 5;
+    while (side < wanted) side = 2 * side - 1;
+    return side;
+}
+
+void apply_planes(EncodeArguments& a) {
+    EncodeOptions& options = a.command.options;
+    options.normal_side = plane_side(a.normals);
+    if (a.colors) options.color_side = plane_side(*a.colors);
+    options.plane_quality = a.plane_quality;
 }
 
 void apply_rate(EncodeArguments& a) {
@@ -250,6 +282,7 @@ int run_gim(int argc, const char* const* argv) {
     int exit_status = kWrongUsage;
     if (app.got_subcommand("encode")) {
         apply_rate(encode_arguments);
+        apply_planes(encode_arguments);
         encode_arguments.command.options.density = !encode_arguments.even;
         exit_status = run_encode(encode_arguments.command);
     } else if (app.got_subcommand("decode")) {

@@ -52,6 +52,14 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line(
         "image", side + " x " + side + (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
     print_line(format_line("bytes", with_thousands(report.file_bytes)));
+    for (const PlaneReport& plane : report.planes) {
+        const bool is_color = plane.kind == PlaneReport::Kind::kColors;
+        const std::string plane_side = std::to_string(plane.side);
+        print_line(
+            format_line(is_color ? "colours" : "normal map",
+                        plane_side + " x " + plane_side + ", " + with_thousands(plane.bytes) + " bytes, " +
+                            (is_color ? fixed(plane.psnr, 1) + " dB" : fixed(plane.mean_angle, 2) + " degrees")));
+    }
     print_line(format_line("bits per vertex", fixed(report.bits_per_vertex, 3)));
     print_line(format_line("bits per sample", fixed(report.bits_per_sample, 3)));
     print_line(format_line("PSNR", fixed(report.error.psnr, 2) + " dB"));

@@ -18,9 +18,15 @@ struct Level {
     gim_level_info shape = {};
 };
 
+struct Plane {
+    uint32_t kind = 0;
+    gim_plane_info shape = {};
+};
+
 struct Image {
     std::vector<Level> levels;
     uint32_t paths = 0;
+    std::vector<Plane> planes;
     uint32_t seam_points = 0;  // surface points on the ring of level 0, mates counted once
 };
 
@@ -48,6 +54,8 @@ const char* layout_name(uint32_t layout) {
 
 const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS ? "lossless" : "lossy"; }
 
+const char* plane_name(uint32_t kind) { return kind == GIM_PLANE_NORMALS ? "normals" : "colors"; }
+
 void add_image(const Bytes& file, uint32_t index, Description& d) {
     const std::string name = "image " + std::to_string(index);
     Image image;
@@ -65,6 +73,13 @@ void add_image(const Bytes& file, uint32_t index, Description& d) {
         status = gim_read_seams(&d.info, file.data(), file.size(), index, 0, class_of.data(), &image.paths);
         if (status != GIM_OK) d.problems.push_back(name + ", seams: " + describe_status(status));
         image.seam_points = static_cast<uint32_t>(std::set<uint32_t>(class_of.begin(), class_of.end()).size());
+    }
+    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
+        Plane plane{kind, {}};
+        status = gim_read_plane_info(&d.info, file.data(), file.size(), index, kind, 0, &plane.shape);
+        if (status == GIM_NO_SUCH_PLANE) continue;
+        if (status != GIM_OK) d.problems.push_back(name + ", " + plane_name(kind) + ": " + describe_status(status));
+        if (status == GIM_OK) image.planes.push_back(plane);
     }
     d.images.push_back(std::move(image));
 }
@@ -141,7 +156,15 @@ void print_json(const std::string& path, const Description& d) {
                               {"prefix_bytes", level.shape.prefix_size},
                               {"scratch_bytes", level.shape.scratch_size}});
         }
-        images.push_back({{"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}});
+        ordered_json planes = ordered_json::array();
+        for (const Plane& plane : image.planes) {
+            planes.push_back({{"kind", plane_name(plane.kind)},
+                              {"side", plane.shape.side},
+                              {"bytes", plane.shape.stream_size},
+                              {"quantizer", plane.shape.quantizer}});
+        }
+        images.push_back(
+            {{"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}});
     }
     ordered_json chunks = ordered_json::array();
     for (const gim_chunk& chunk : d.chunks) {
@@ -201,6 +224,13 @@ void print_text(const std::string& path, const Description& d) {
         for (const Level& level : image.levels) {
             std::printf("  %5u  %5u  %9u  %9u  %13llu\n", level.level, level.shape.side, level.shape.vertex_count,
                         level.shape.triangle_count, static_cast<unsigned long long>(level.shape.prefix_size));
+        }
+    }
+    for (size_t i = 0; i < d.images.size(); ++i) {
+        for (const Plane& plane : d.images[i].planes) {
+            std::printf("image %zu, %s: %u x %u, %llu bytes, quantizer %g\n", i, plane_name(plane.kind),
+                        plane.shape.side, plane.shape.side, static_cast<unsigned long long>(plane.shape.stream_size),
+                        static_cast<double>(plane.shape.quantizer));
         }
     }
     std::printf("chunks\n");

@@ -32,6 +32,13 @@ ordered_json to_json(const Comparison& comparison) {
 }
 
 ordered_json to_json(const EncodeReport& report) {
+    ordered_json planes = ordered_json::array();
+    for (const PlaneReport& plane : report.planes) {
+        const bool is_color = plane.kind == PlaneReport::Kind::kColors;
+        ordered_json entry = {{"kind", is_color ? "colors" : "normals"}, {"side", plane.side}, {"bytes", plane.bytes}};
+        entry[is_color ? "psnr" : "mean_angle"] = is_color ? plane.psnr : plane.mean_angle;
+        planes.push_back(entry);
+    }
     ordered_json times = ordered_json::array();
     for (const StageTime& time : report.times) times.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
     ordered_json levels = ordered_json::array();
@@ -61,6 +68,7 @@ ordered_json to_json(const EncodeReport& report) {
             {"bits_per_vertex", report.bits_per_vertex},
             {"file_bytes", report.file_bytes},
             {"sideband_bytes", report.sideband_bytes},
+            {"planes", planes},
             {"error", to_json(report.error)},
             {"levels", levels},
             {"times", times},

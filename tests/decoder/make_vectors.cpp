@@ -6,8 +6,11 @@
 #include <functional>
 #include <limits>
 
+#include "encoder/code_bands.h"
+#include "encoder/wavelet_analysis.h"
 #include "encoder/write_gim.h"
 #include "format/checksum.h"
+#include "format/plane_code.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "tests/decoder/vectors.h"
@@ -82,6 +85,29 @@ Bytes encode(const std::vector<GeometryImage>& images, const CodingParameters& p
         std::abort();
     }
     return file.value();
+}
+
+// A plane of whole numbers: a slope in the first component, a hill and stripes in the others.
+Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
+    Bytes exponents;
+    std::vector<Bytes> streams;
+    for (const uint32_t side : sides) {
+        std::vector<float> values;
+        for (uint32_t r = 0; r < side; ++r) {
+            for (uint32_t c = 0; c < side; ++c) {
+                const uint32_t last = side - 1, u = c * 256 / last, v = r * 256 / last;
+                values.push_back(first + static_cast<float>(u / 4 + v / 2));
+                values.push_back(static_cast<float>(u * (256 - u) / 256 * v / 128) - 32.0f);
+                values.push_back(static_cast<float>(u / 32 % 2 * 24) - 12.0f);
+            }
+        }
+        Pyramid<int32_t> bands = quantize_bands(analyse<Irreversible97>(std::move(values), side), quantizer);
+        streams.push_back(code_bands(bands, 1)[0]);
+        uint8_t j = 0;
+        while ((1u << j) + 1 < side) ++j;
+        exponents.push_back(j);
+    }
+    return serialize_plane(quantizer, exponents, streams);
 }
 
 // ---- files in parts --------------------------------------------------------------------------------------------------
@@ -164,6 +190,7 @@ class Writer {
         write_bytes(folder_ / "valid" / (name + ".gim"), file);
         write_bytes(folder_ / "valid" / (name + ".f32"), to_bytes(decoded.samples));
         write_bytes(folder_ / "valid" / (name + ".tri"), to_bytes(decoded.triangles));
+        if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
     }
     void invalid(const std::string& name, const Bytes& file) {
         const gim_status status = decode_all(file).status;
@@ -210,6 +237,14 @@ void write_valid(Writer& out) {
     measured.level_psnr = true;
     out.valid("level-psnr",
               set_level_psnr(encode({hill(17, folded_sides(), 2, 15)}, measured), std::vector<double>{73.9, 60.25, 0}));
+    // Finer and coarser than the image; the text may come last.
+    CodingParameters planes = lossy(12, 9, 30);
+    planes.planes = {{ChunkType::kNormals, plane({33}, 48, 200)}, {ChunkType::kColors, plane({9}, 6, 20)}};
+    planes.text = "with planes";
+    out.valid("planes-sphere-17", encode({hill(17, folded_sides(), 0, 15)}, planes));
+    planes = lossy(10, 5, 30);
+    planes.planes = {{ChunkType::kColors, plane({17, 5}, 20, -100)}};
+    out.valid("planes-two-images", encode({hill(9, tube(), 0, 16), hill(5, open_square(), 0, 17)}, planes));
 
     CodingParameters text = lossless(8, 3);
     text.text = "a short text";
@@ -324,6 +359,50 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     }());
 }
 
+void write_invalid_planes(Writer& out) {
+    CodingParameters parameters = lossy(12, 9, 30);
+    parameters.planes = {{ChunkType::kNormals, plane({17}, 48, 200)}};
+    const Bytes file = encode({hill(17, torus(), 0, 15)}, parameters);
+    const auto changed = [&](const char* name, const std::function<void(Chunk&, Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.chunks.back(), p.payloads.back()); }));
+    };
+    changed("malformed.plane-critical", [](Chunk& c, Bytes&) { c.optional = false; });
+    changed("malformed.plane-zstd", [](Chunk& c, Bytes&) { c.zstd = true; });
+    changed("malformed.plane-empty", [](Chunk&, Bytes& b) { b.clear(); });
+    changed("unsupported-version.plane-coding-1", [](Chunk&, Bytes& b) { b[0] = 1; });
+    changed("malformed.plane-quantizer-nan", [](Chunk&, Bytes& b) { b[3] = b[4] = 0xFF; });
+    changed("malformed.plane-quantizer-negative", [](Chunk&, Bytes& b) { b[4] |= 0x80; });
+    changed("malformed.plane-no-sides", [](Chunk&, Bytes& b) { b.resize(5); });
+    changed("malformed.plane-side-2", [](Chunk&, Bytes& b) { b[5] = 0; });
+    changed("malformed.plane-side-32769", [](Chunk&, Bytes& b) { b[5] = 15; });
+    changed("limit-exceeded.plane-samples", [](Chunk&, Bytes& b) { b[5] = 14; });
+    changed("malformed.plane-magnitude-too-large", [](Chunk&, Bytes& b) { b.resize(6), b.resize(70, 0xFF); });
+    changed("malformed.plane-raw-bits-missing", [](Chunk&, Bytes& b) { b.resize(6), b.resize(10, 0xFF); });
+    out.invalid("malformed.plane-twice",
+                with_parts(file, [](Parts& p) { insert_chunk(&p, p.chunks.size(), 3, true, p.payloads.back()); }));
+    out.invalid("malformed.plane-before-a-level",
+                with_parts(file, [](Parts& p) { insert_chunk(&p, p.chunks.size() - 2, 4, true, p.payloads.back()); }));
+    out.invalid("malformed.plane-finer-seams", [&] {
+        Random random(13);
+        Sideband s = random_sideband(random, 17, 4, 1, false);
+        CodingParameters coarse = lossy(12, 17, 30);
+        coarse.planes = {{ChunkType::kNormals, plane({9}, 48, 200)}};
+        return encode({hill(33, s, 0, 14)}, coarse);
+    }());
+    out.invalid("checksum.plane", [&] {
+        Bytes b = file;
+        b.back() ^= 1;
+        return b;
+    }());
+    out.invalid("need-more-input.plane", {file.begin(), file.end() - 1});
+    parameters = lossy(12, 9, 30);
+    parameters.planes = {{ChunkType::kColors, plane({17, 5}, 20, -100)}};
+    const Bytes two = encode({hill(9, tube(), 0, 16), hill(5, open_square(), 0, 17)}, parameters);
+    out.invalid("malformed.plane-size-table-long", with_parts(two, [](Parts& p) { p.payloads.back().push_back(0); }));
+    out.invalid("malformed.plane-size-table-short", with_parts(two, [](Parts& p) { p.payloads.back().pop_back(); }));
+    out.invalid("malformed.plane-size-table-cut-off", with_parts(two, [](Parts& p) { p.payloads.back().resize(8); }));
+}
+
 void write_invalid_payloads(Writer& out, const Bytes& plain, const Bytes& sphere, const Bytes& torus_file) {
     const auto seams = [&](const char* name, const Bytes& from, Bytes payload) {
         out.invalid(name, with_parts(from, [&](Parts& p) { p.payloads[0] = std::move(payload); }));
@@ -384,6 +463,7 @@ int main(int argc, char** argv) {
     const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
     const Bytes fine = encode({hill(17, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6));
     write_invalid_container(out, plain, fine);
+    write_invalid_planes(out);
     write_invalid_payloads(out, plain, sphere, torus_file);
     return out.fine() ? 0 : 1;
 }

@@ -14,11 +14,12 @@
 
 namespace gim::test {
 
-// All levels that can be closed of all images, in order; the first failure ends it.
+// All levels that can be closed of all images, in order, then the planes; the first failure ends it.
 struct Decoded {
     gim_status status = GIM_OK;
     std::vector<float> samples;       // of gim_decode_positions
     std::vector<uint32_t> triangles;  // of gim_decode_mesh
+    std::vector<float> planes;        // of gim_decode_plane
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
 
@@ -44,6 +45,25 @@ inline gim_status decode_one(const gim_info& info, const std::vector<uint8_t>& f
     return GIM_OK;
 }
 
+// All levels of one plane of one image, if the file has it.
+inline gim_status decode_plane(const gim_info& info, const std::vector<uint8_t>& file, uint32_t image, uint32_t kind,
+                               Decoded* out) {
+    gim_plane_info p{};
+    for (uint32_t level = 0; level <= p.coarsest_level; ++level) {
+        gim_status s = gim_read_plane_info(&info, file.data(), file.size(), image, kind, level, &p);
+        if (s == GIM_NO_SUCH_PLANE) return GIM_OK;
+        if (s != GIM_OK) return s;
+        out->prefix = out->prefix > p.prefix_size ? out->prefix : p.prefix_size;
+        std::vector<float> values(size_t{p.side} * p.side * 3);
+        std::vector<std::max_align_t> scratch(p.scratch_size / sizeof(std::max_align_t) + 1);
+        s = gim_decode_plane(&info, file.data(), file.size(), image, kind, level, values.data(), scratch.data(),
+                             p.scratch_size);
+        if (s != GIM_OK) return s;
+        out->planes.insert(out->planes.end(), values.begin(), values.end());
+    }
+    return GIM_OK;
+}
+
 inline Decoded decode_all(const std::vector<uint8_t>& file) {
     Decoded out;
     gim_info info;
@@ -52,6 +72,10 @@ inline Decoded decode_all(const std::vector<uint8_t>& file) {
         uint32_t coarsest = 0;
         for (uint32_t level = 0; out.status == GIM_OK && level <= coarsest; ++level)
             out.status = decode_one(info, file, image, level, &coarsest, &out);
+    }
+    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
+        for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
+            out.status = decode_plane(info, file, image, kind, &out);
     }
     return out;
 }

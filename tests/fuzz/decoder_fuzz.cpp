@@ -60,6 +60,20 @@ void decode(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t im
         if (v >= l.vertex_count) __builtin_trap();
 }
 
+void decode_plane(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t image, uint32_t kind) {
+    gim_plane_info p{};
+    for (uint32_t level = 0; level <= p.coarsest_level; ++level) {
+        if (gim_read_plane_info(&info, bytes.data(), bytes.size(), image, kind, level, &p) != GIM_OK) return;
+        std::vector<float> values(size_t{p.side} * p.side * 3);
+        std::vector<std::max_align_t> scratch(p.scratch_size / sizeof(std::max_align_t) + 1);
+        if (gim_decode_plane(&info, bytes.data(), bytes.size(), image, kind, level, values.data(), scratch.data(),
+                             p.scratch_size) != GIM_OK)
+            return;
+        for (const float v : values)
+            if (!(v >= -1.000001f && v <= 1.000001f)) __builtin_trap();
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -69,6 +83,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (gim_read_info(bytes.data(), bytes.size(), &kLimits, &info) != GIM_OK) return 0;
     for (uint32_t image = 0; image < info.image_count; ++image)
         for (uint32_t level = 0; level < info.level_count; ++level) decode(info, bytes, image, level);
+    for (uint32_t image = 0; image < info.image_count; ++image)
+        for (uint32_t kind = 0; kind < 2; ++kind) decode_plane(info, bytes, image, kind);
     gim_chunk chunk;
     for (uint32_t i = 0; gim_read_chunk(&info, bytes.data(), bytes.size(), i, &chunk) == GIM_OK; ++i) {
     }

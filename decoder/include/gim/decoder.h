@@ -44,7 +44,8 @@ enum {
     GIM_BAD_ARGUMENT = 5,
     GIM_SCRATCH_TOO_SMALL = 6,
     GIM_CHECKSUM = 7,
-    GIM_NO_SUCH_LEVEL = 8
+    GIM_NO_SUCH_LEVEL = 8,
+    GIM_NO_SUCH_PLANE = 9
 };
 /* A short English description of any status; never NULL. */
 GIM_API const char* gim_status_text(gim_status status);
@@ -122,6 +123,31 @@ GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size
 GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                    float* positions, float* normals, uint32_t* triangles, void* scratch,
                                    size_t scratch_size);
+
+/* Attribute planes: what a surface has besides its shape, as images on the same square at a resolution of their own. Sample
+ * (row, column) of a plane of side s belongs to the surface point at row/(s-1), column/(s-1) of the square. Samples of one
+ * surface point on the cut are bit-equal. A file may have one plane of each kind, of all its images.
+ *   GIM_PLANE_NORMALS  the input's unit normals in object space, pointing out of the surface; 0 0 0 where undefined
+ *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB */
+enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
+typedef struct gim_plane_info {
+    uint32_t side;           /* samples per side at this level, 2^j + 1; independent of the image's side */
+    uint32_t coarsest_level; /* of the plane: level L has every 2^L-th sample's place */
+    float quantizer;         /* quantizer step: colours in 1/255, normals in 1/1024 of a unit vector as gim writes them */
+    uint64_t stream_size;    /* bytes of this image's plane in the file */
+    uint64_t prefix_size;    /* bytes of the file, from its start, that the plane needs */
+    uint64_t scratch_size;   /* bytes of scratch for gim_decode_plane on this level */
+} gim_plane_info;
+
+/* level: of the plane, 0 = full resolution. GIM_NO_SUCH_PLANE where the file has none of that kind (told by the index alone),
+ * GIM_NEED_MORE_INPUT unless prefix_size bytes are there. Cost O(chunk). */
+GIM_API gim_status gim_read_plane_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                       uint32_t kind, uint32_t level, gim_plane_info* plane_info);
+
+/* values: side*side*3 floats, row-major. scratch: as for positions. On failure values are unspecified. Cost O(side^2). The
+ * floats are the same bits on every platform. */
+GIM_API gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
+                                    uint32_t level, float* values, void* scratch, size_t scratch_size);
 
 /* Chunk i of the index, for tools that describe a file. GIM_BAD_ARGUMENT past the last chunk. */
 typedef struct gim_chunk {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace gim {
 
 // Where the encoder was when it failed. `stage_name` gives the word that messages use.
-enum class Stage { kInput, kClean, kCut, kBoundaryMap, kParametrize, kSample, kFit, kCode, kWrite, kCompare };
+enum class Stage { kInput, kClean, kCut, kBoundaryMap, kParametrize, kSample, kFit, kPlanes, kCode, kWrite, kCompare };
 std::string_view stage_name(Stage stage);
 
 struct Error {
@@ -38,10 +39,28 @@ class [[nodiscard]] Result {
     std::variant<T, Error> state_;
 };
 
+struct TextureImage {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgb;  // 3 * width * height, sRGB, row-major, top row first
+};
+
+// Colours of a mesh, per triangle and corner, so that seams of a texture need no extra vertices. Each array is empty or has
+// one entry per triangle. A point's colour is its texture's times its corner colours'; white where there is neither.
+struct Appearance {
+    std::vector<std::array<std::array<float, 3>, 3>> corner_colors;     // sRGB, 0..1
+    std::vector<std::array<std::array<float, 2>, 3>> corner_texcoords;  // u, v: 0 0 is the top left corner of the
+                                                                        // texture, 1 1 the bottom right one; it repeats
+    std::vector<uint32_t> triangle_texture;                             // index into textures; UINT32_MAX: none
+    std::vector<TextureImage> textures;
+
+    bool empty() const { return corner_colors.empty() && (textures.empty() || triangle_texture.empty()); }
+};
+
 // Triangle soup or mesh as read from a file. Triangles index into `positions`; coordinates in any unit.
 struct TriangleMesh {
     std::vector<std::array<double, 3>> positions;
     std::vector<std::array<uint32_t, 3>> triangles;
+    Appearance appearance = {};
 };
 
 // Called at the start of each stage and during long ones. `fraction` is 0..1 within the stage. Never called concurrently.
@@ -118,6 +137,16 @@ struct EncodeOptions {
     RateTarget rate;
     FitStrength fit = FitStrength::kAuto;
     bool density = true;  // more samples where a first sampling leaves more error; false: spread evenly
+
+    // Attribute planes: sides are 2^j + 1, up to 4097, and independent of `side`; four times the bytes per doubling.
+    uint32_t normal_side = 0;  // normals of the input; 0: none
+    std::optional<uint32_t>
+        color_side;  // colours of the input; 0: none; unset: none without colours, else about as fine
+                     // as they are, up to 1025
+    std::optional<double>
+        plane_quality;  // 0..100, 10 more halve the step; unset: that of `rate` where it is a quality, 90
+                        // for lossless images (planes are always lossy), else 75
+
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the bytes do not depend on it
 };
@@ -136,6 +165,17 @@ struct StageTime {
     double seconds = 0;
 };
 
+// What became of an attribute plane.
+struct PlaneReport {
+    enum class Kind { kNormals, kColors };
+    Kind kind = Kind::kNormals;
+    uint32_t side = 0;   // of the largest image
+    uint64_t bytes = 0;  // of its chunk
+    // Decoded plane on the decoded surface against the input, over the input's surface.
+    double mean_angle = 0;  // kNormals: degrees
+    double psnr = 0;        // kColors: dB of the sRGB values
+};
+
 // Figures of one run, in the order they become known.
 struct EncodeReport {
     uint64_t input_vertices = 0, input_triangles = 0;     // as read
@@ -149,6 +189,7 @@ struct EncodeReport {
     uint64_t flipped_triangles = 0;                   // in the parametrization; always 0 in a successful run
     double bits_per_sample = 0, bits_per_vertex = 0;  // file bits over samples / input vertices
     uint64_t file_bytes = 0, sideband_bytes = 0;
+    std::vector<PlaneReport> planes;
     Comparison error;                 // decoded level 0 against the input mesh
     std::vector<LevelReport> levels;  // finest first
     std::vector<StageTime> times;

@@ -1,0 +1,137 @@
+// Attribute planes of the C interface: normals and colours on grids of their own.  spec/gim-format.md, "Planes".
+#include <algorithm>
+#include <cmath>
+
+#include "decoder/image_decoder.h"
+#include "decoder/reopen.h"
+#include "format/plane_code.h"
+#include "gim/decoder.h"
+
+namespace gim {
+namespace {
+
+static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1);
+
+// One level of one image's plane, ready to be decoded.
+struct PlaneLevel {
+    PlaneChunk chunk;
+    PyramidShape shape;
+    SeamTable seams;
+    uint32_t side = 0, coarsest = 0;
+    uint64_t prefix = 0;
+};
+
+// What decoding needs.
+struct PlaneWorkspace {
+    PyramidWorkspace pyramid;
+    uint32_t* class_of = nullptr;
+    FuseWork fuse;
+};
+
+PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
+    PlaneWorkspace ws;
+    ws.pyramid = lay_out_pyramid(side, arena);
+    ws.class_of = arena->take<uint32_t>(ring_length(side));
+    ws.fuse = lay_out_fuse(side, arena);
+    return ws;
+}
+
+size_t plane_scratch_size(uint32_t side) {
+    Arena arena(nullptr);
+    (void)lay_out_plane(side, &arena);
+    return arena.used();
+}
+
+bool find_plane(const Header& header, uint32_t kind, Chunk* chunk, uint64_t* offset) {
+    ChunkWalk walk(header);
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == plane_type(kind)) return true;
+    }
+    return false;
+}
+
+Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind, uint32_t level,
+                  PlaneLevel* out) {
+    const std::span<const uint8_t> file = {static_cast<const uint8_t*>(bytes), size};
+    Header header;
+    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return s;
+    if (image >= header.image_count() || kind >= kPlaneKinds) return Status::kBadArgument;
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (!find_plane(header, kind, &chunk, &offset)) return Status::kNoSuchPlane;
+    if (Status s = read_seams(header, file, image, &out->seams); s != Status::kOk) return s;
+    std::span<const uint8_t> payload;
+    if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
+    if (Status s = parse_plane(payload, header.image_count(), image, limits_of(&info->limits), &out->chunk);
+        s != Status::kOk)
+        return s;
+
+    // The ring's classes exist on grids at least as fine as the seams' own.
+    const uint32_t side = out->chunk.side(image);
+    const uint32_t least = std::max(3u, out->seams.node_side);
+    if (side < least) return Status::kMalformed;
+    while (((side - 1) >> (out->coarsest + 1)) + 1 >= least) ++out->coarsest;
+    if (level > out->coarsest) return Status::kNoSuchLevel;
+    out->side = ((side - 1) >> level) + 1;
+    out->shape = {out->chunk.side_exponents[image], level, out->chunk.quantizer, 0};
+    out->prefix = offset + chunk.size;
+    return Status::kOk;
+}
+
+void finish_normal(float* n) {
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; ++k) n[k] = length > 0.0f ? n[k] / length : 0.0f;
+}
+
+void finish_color(float* c) {
+    from_luma(c);
+    for (int k = 0; k < 3; ++k) c[k] = std::min(std::max(c[k], 0.0f), 255.0f) / 255.0f;
+}
+
+Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace& ws, float* values) {
+    PyramidDecoder<Irreversible97> decoder(plane.shape, ws.pyramid);
+    if (Status s = decoder.decode_stream(plane.chunk.stream, plane.shape.level); s != Status::kOk) return s;
+    const uint32_t side = plane.side;
+    const size_t count = size_t{side} * side * 3;
+    const float* samples = to_units<float>(ws.pyramid.images[0], count);
+    std::copy_n(samples, count, values);
+    ring_classes(plane.seams, side, {ws.class_of, ring_length(side)});
+    average_classes(side, ws.class_of, ring_class_count(plane.seams, side), values, ws.fuse);
+    for (size_t i = 0; i < count; i += 3)
+        kind == GIM_PLANE_NORMALS ? finish_normal(values + i) : finish_color(values + i);
+    return Status::kOk;
+}
+
+gim_status code(Status status) { return static_cast<gim_status>(status); }
+
+}  // namespace
+}  // namespace gim
+
+using namespace gim;
+
+gim_status gim_read_plane_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
+                               uint32_t level, gim_plane_info* plane_info) {
+    if (!plane_info) return GIM_BAD_ARGUMENT;
+    PlaneLevel plane;
+    if (Status s = open_plane(info, bytes, size, image, kind, level, &plane); s != Status::kOk) return code(s);
+    *plane_info = {};
+    plane_info->side = plane.side;
+    plane_info->coarsest_level = plane.coarsest;
+    plane_info->quantizer = plane.chunk.quantizer;
+    plane_info->stream_size = plane.chunk.stream.size();
+    plane_info->prefix_size = plane.prefix;
+    plane_info->scratch_size = plane_scratch_size(plane.side);
+    return GIM_OK;
+}
+
+gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
+                            uint32_t level, float* values, void* scratch, size_t scratch_size) {
+    if (!values) return GIM_BAD_ARGUMENT;
+    PlaneLevel plane;
+    if (Status s = open_plane(info, bytes, size, image, kind, level, &plane); s != Status::kOk) return code(s);
+    if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return GIM_BAD_ARGUMENT;
+    if (scratch_size < plane_scratch_size(plane.side)) return GIM_SCRATCH_TOO_SMALL;
+    Arena arena(scratch);
+    const PlaneWorkspace ws = lay_out_plane(plane.side, &arena);
+    return code(decode_plane(plane, kind, ws, values));
+}

@@ -1,0 +1,215 @@
+#include "encoder/sample_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "encoder/grid_surface.h"
+#include "encoder/parallel.h"
+
+namespace gim {
+
+namespace {
+
+constexpr size_t kBlock = 4096;
+constexpr size_t kMostFacesForCreases = 64;  // a vertex with more is smooth, so that the cost stays linear
+
+double corner_angle(const Mesh& mesh, uint32_t h) {
+    const Vec3& p = mesh.positions[from(mesh, h)];
+    const Vec3 a = mesh.positions[to(mesh, h)] - p, b = mesh.positions[from(mesh, prev(h))] - p;
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+Vec3 unit_or_zero(const Vec3& v) {
+    const double length = v.norm();
+    return length > 0 ? Vec3(v / length) : Vec3::Zero();
+}
+
+std::vector<Vec3> face_normals(const Mesh& mesh) {
+    std::vector<Vec3> normals(mesh.triangles.size());
+    for (size_t f = 0; f < normals.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        const Vec3& a = mesh.positions[t[0]];
+        normals[f] = unit_or_zero((mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a));
+    }
+    return normals;
+}
+
+// Half-edges by the vertex that they leave: those of vertex v are at first[v] .. first[v+1]-1.
+struct Corners {
+    std::vector<uint32_t> first, half_edges;
+};
+Corners corners_of(const Mesh& mesh) {
+    Corners c;
+    c.first.assign(mesh.positions.size() + 1, 0);
+    c.half_edges.resize(mesh.triangles.size() * 3);
+    for (const Triangle& t : mesh.triangles) {
+        for (const uint32_t v : t) ++c.first[v + 1];
+    }
+    for (size_t v = 0; v + 1 < c.first.size(); ++v) c.first[v + 1] += c.first[v];
+    std::vector<uint32_t> at(c.first.begin(), c.first.end() - 1);
+    for (uint32_t h = 0; h < c.half_edges.size(); ++h) c.half_edges[at[from(mesh, h)]++] = h;
+    return c;
+}
+
+// Angle-weighted mean of the faces around a corner's vertex that are bent against the corner's own face by less than the
+// crease angle.
+std::vector<Vec3> corner_normals(const Mesh& mesh, uint32_t threads) {
+    const std::vector<Vec3> faces = face_normals(mesh);
+    const Corners corners = corners_of(mesh);
+    const double least = std::cos(AttributeSource::kCreaseAngle * std::numbers::pi / 180);
+    std::vector<Vec3> normals(mesh.triangles.size() * 3);
+    parallel_blocks(mesh.positions.size(), kBlock, threads, [&](size_t, size_t begin, size_t end) {
+        std::vector<double> angles;
+        for (size_t v = begin; v < end; ++v) {
+            const std::span<const uint32_t> around =
+                std::span(corners.half_edges).subspan(corners.first[v], corners.first[v + 1] - corners.first[v]);
+            Vec3 all = Vec3::Zero();
+            angles.clear();
+            for (const uint32_t h : around) {
+                angles.push_back(corner_angle(mesh, h));
+                all += angles.back() * faces[face_of(h)];
+            }
+            for (const uint32_t h : around) {
+                const Vec3& own = faces[face_of(h)];
+                Vec3 sum = all;
+                if (around.size() <= kMostFacesForCreases && own.squaredNorm() > 0) {
+                    sum.setZero();
+                    for (size_t i = 0; i < around.size(); ++i) {
+                        const Vec3& other = faces[face_of(around[i])];
+                        if (own.dot(other) >= least) sum += angles[i] * other;
+                    }
+                }
+                const Vec3 mean = unit_or_zero(sum);
+                normals[h] = mean.squaredNorm() > 0 ? mean : own;
+            }
+        }
+    });
+    return normals;
+}
+
+// The image as a surface: points and outside directions at real grid coordinates.
+class GridSurface {
+  public:
+    GridSurface(const GeometryImage& image, RingGluing gluing) : image_(image), gluing_(std::move(gluing)) {
+        outside_.assign(image.positions.size(), Vec3::Zero());
+        for (const Triangle& t : triangulate_grid(image.positions, image.side, gluing_)) {
+            const Vec3& a = image.positions[t[0]];
+            const Vec3 n = (image.positions[t[1]] - a).cross(image.positions[t[2]] - a);
+            for (const uint32_t v : t) outside_[gluing_.representative[v]] += n;
+        }
+        for (size_t v = 0; v < outside_.size(); ++v) outside_[v] = unit_or_zero(outside_[gluing_.representative[v]]);
+    }
+
+    struct Point {
+        Vec3 position, outside;
+        double spacing = 0;  // the cell's longer diagonal
+    };
+    // 0 .. side-1 each.
+    Point at(double row, double column) const {
+        const uint32_t cells = image_.side - 1;
+        const uint32_t r = std::min(static_cast<uint32_t>(row), cells - 1);
+        const uint32_t q = std::min(static_cast<uint32_t>(column), cells - 1);
+        const double y = row - r, x = column - q;
+        const uint32_t a = r * image_.side + q, b = a + 1, c = a + image_.side, d = c + 1;
+        const bool main = split_cell(image_.positions, image_.side, gluing_, r * cells + q)[0][2] == d;
+        // Weights of a, b, c, d within the triangle that holds the point.
+        std::array<double, 4> w;
+        if (main) {
+            w = x >= y ? std::array<double, 4>{1 - x, x - y, 0, y} : std::array<double, 4>{1 - y, 0, y - x, x};
+        } else {
+            w = x + y <= 1 ? std::array<double, 4>{1 - x - y, x, y, 0}
+                           : std::array<double, 4>{0, 1 - y, 1 - x, x + y - 1};
+        }
+        const std::array<uint32_t, 4> corners = {a, b, c, d};
+        Point p{Vec3::Zero(), Vec3::Zero(), 0};
+        for (size_t i = 0; i < 4; ++i) {
+            p.position += w[i] * image_.positions[corners[i]];
+            p.outside += w[i] * outside_[corners[i]];
+        }
+        p.outside = unit_or_zero(p.outside);
+        p.spacing = std::max((image_.positions[a] - image_.positions[d]).norm(),
+                             (image_.positions[b] - image_.positions[c]).norm());
+        return p;
+    }
+
+  private:
+    const GeometryImage& image_;
+    RingGluing gluing_;
+    std::vector<Vec3> outside_;
+};
+
+}  // namespace
+
+AttributeSource::AttributeSource(const Mesh& mesh, uint32_t threads)
+    : mesh_(mesh), tree_(mesh, threads), corner_normals_(corner_normals(mesh, threads)), threads_(threads) {}
+
+Vec3 AttributeSource::face_normal(uint32_t face) const {
+    const Triangle& t = mesh_.triangles[face];
+    const Vec3& a = mesh_.positions[t[0]];
+    return (mesh_.positions[t[1]] - a).cross(mesh_.positions[t[2]] - a);
+}
+
+// Searches again from further and further outside, as long as what is found looks the other way.
+void AttributeSource::keep_to_the_right_side(const Vec3& query, const Vec3& outside, double spacing,
+                                             ClosestPoint* found) const {
+    if (face_normal(found->triangle).dot(outside) >= 0) return;
+    const double first = std::max(std::sqrt(found->squared_distance), 0.125 * spacing);
+    for (double offset = first; offset <= 8 * first; offset *= 2) {
+        const ClosestPoint again = tree_.find(query + offset * outside, found->triangle);
+        if (face_normal(again.triangle).dot(outside) <= 0) continue;
+        // Nothing near looks the right way: a fold of the image, or the rim of an open surface.
+        if ((again.point - query).norm() > 4 * first) return;
+        *found = again;
+        return;
+    }
+}
+
+Result<std::vector<ClosestPoint>> AttributeSource::locate(const GeometryImage& image, uint32_t side) const {
+    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
+    const GridSurface surface(image, std::move(gluing));
+    const double scale = double(image.side - 1) / (side - 1);
+    const auto texel = [&](size_t i) { return surface.at(double(i / side) * scale, double(i % side) * scale); };
+    std::vector<Vec3> queries(size_t{side} * side);
+    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) queries[i] = texel(i).position;
+    });
+    std::vector<ClosestPoint> found = tree_.find_all(queries, threads_);
+    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const auto p = texel(i);
+            keep_to_the_right_side(p.position, p.outside, p.spacing, &found[i]);
+        }
+    });
+    return found;
+}
+
+Vec3 AttributeSource::normal(const ClosestPoint& point) const {
+    Vec3 n = Vec3::Zero();
+    for (size_t i = 0; i < 3; ++i) n += point.barycentric[i] * corner_normals_[3 * size_t{point.triangle} + i];
+    return unit_or_zero(n);
+}
+
+std::vector<float> AttributeSource::normals(std::span<const ClosestPoint> points) const {
+    std::vector<float> values(points.size() * 3);
+    parallel_blocks(points.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Vec3 n = normal(points[i]);
+            for (int k = 0; k < 3; ++k) values[3 * i + static_cast<size_t>(k)] = static_cast<float>(n[k]);
+        }
+    });
+    return values;
+}
+
+Result<bool> equalize_ring(const Sideband& sideband, uint32_t side, std::vector<float>& values) {
+    GIM_TRY(gluing, glue_ring(sideband, side));
+    for (size_t i = 0; i < gluing.representative.size(); ++i) {
+        const size_t from = gluing.representative[i];
+        if (from != i)
+            std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * from), 3,
+                        values.begin() + static_cast<ptrdiff_t>(3 * i));
+    }
+    return true;
+}
+
+}  // namespace gim

@@ -1,0 +1,52 @@
+// Attribute planes: the fields of their chunks, and how a triple of samples stands for a normal or a colour.
+// spec/gim-format.md, "Planes".
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/container.h"
+#include "format/status.h"
+
+namespace gim {
+
+inline constexpr float kNormalUnit = 1024;  // a writer's length of a normal; readers take any
+
+// A plane chunk as stored; the spans point into its payload.
+struct PlaneChunk {
+    float quantizer = 0;
+    std::span<const uint8_t> side_exponents;  // one per image; side = 2^j + 1
+    std::span<const uint8_t> stream;          // of the image that was asked for
+
+    uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
+};
+
+// The chunk type of a kind of plane, as gim/decoder.h counts them (0 normals, 1 colours).
+inline constexpr uint32_t kPlaneKinds = 2;
+inline ChunkType plane_type(uint32_t kind) { return kind == 0 ? ChunkType::kNormals : ChunkType::kColors; }
+
+// image < image_count.
+Status parse_plane(std::span<const uint8_t> payload, uint32_t image_count, uint32_t image,
+                   const ContainerLimits& limits, PlaneChunk* plane);
+
+// One exponent and one stream per image.
+std::vector<uint8_t> serialize_plane(float quantizer, std::span<const uint8_t> side_exponents,
+                                     std::span<const std::vector<uint8_t>> streams);
+
+// Luma and two chroma differences of a colour, all in levels of 8 bits; in place. Errors of equal size in the three are
+// about equally bad in the colour.
+inline void to_luma(float* c) {
+    const float r = c[0], g = c[1], b = c[2];
+    c[0] = 0.25f * r + 0.5f * g + 0.25f * b;
+    c[1] = 0.5f * (r - b);
+    c[2] = 0.5f * g - 0.25f * (r + b);
+}
+inline void from_luma(float* c) {
+    const float y = c[0], o = c[1], g = c[2], rest = y - g;
+    c[0] = rest + o;
+    c[1] = y + g;
+    c[2] = rest - o;
+}
+
+}  // namespace gim
