@@ -163,7 +163,10 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
         "positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z and "
         "mask.\n\n"
         "  gim decode bunny.gim bunny.ply\n"
-        "  gim decode bunny.gim bunny-129.glb --level 1");
+        "Colours become vertex colours (ply, obj) or a base-colour texture (glb), a normal map the glb's normal "
+        "texture.\n\n"
+        "  gim decode bunny.gim bunny-129.glb --level 1\n"
+        "  gim decode bunny.gim bunny.obj --normal-map normals.png --color-map colors.png");
     sub->add_option("IN", c.input, ".gim file to read")->required();
     sub->add_option("OUT", c.output, "File to write: .ply, .obj, .off, .stl, .glb or .exr")
         ->required()
@@ -179,6 +182,21 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
             },
             ""));
     sub->add_option("--level", c.level, "0: full resolution; each next level halves it")->capture_default_str();
+    const CLI::Validator picture(
+        [](const std::string& path) -> std::string {
+            const std::string end = path.size() > 4 ? CLI::detail::to_lower(path.substr(path.size() - 4)) : "";
+            return end == ".png" || end == ".exr" ? "" : "'" + path + "' must end in .png or .exr";
+        },
+        "FILE");
+    sub->add_option(
+           "--normal-map", c.normal_map,
+           "Write the normals of the file here, in object space: .png (16 bits, 0 to 65535 is -1 to 1) or .exr; "
+           "of several images FILE-0, FILE-1, ...")
+        ->check(picture);
+    sub->add_option("--color-map", c.color_map,
+                    "Write the colours of the file here: .png (sRGB) or .exr (linear); with an .obj also OUT.mtl that "
+                    "names it")
+        ->check(picture);
     sub->add_flag("--fused", c.fused, "GLB: share the vertices on the cut, leave texture coordinates out");
 }
 

@@ -22,6 +22,7 @@ struct DecodeCommand {
     std::string input, output;
     uint32_t level = 0;
     bool fused = false;
+    std::string normal_map, color_map;  // .png or .exr to write; empty: none
 };
 int run_decode(const DecodeCommand& command);
 

@@ -14,6 +14,19 @@ struct alignas(16) Block {
     uint8_t bytes[16];
 };
 
+// Nothing where the file has no such plane.
+gim_status decode_plane(const gim_info& info, const Bytes& file, uint32_t image, uint32_t kind, ImagePlane* plane) {
+    gim_plane_info shape;
+    const gim_status status = gim_read_plane_info(&info, file.data(), file.size(), image, kind, 0, &shape);
+    if (status == GIM_NO_SUCH_PLANE) return GIM_OK;
+    if (status != GIM_OK) return status;
+    plane->side = shape.side;
+    plane->values.resize(size_t{3} * shape.side * shape.side);
+    std::vector<Block> scratch(shape.scratch_size / sizeof(Block) + 1);
+    return gim_decode_plane(&info, file.data(), file.size(), image, kind, 0, plane->values.data(), scratch.data(),
+                            shape.scratch_size);
+}
+
 }  // namespace
 
 std::string describe_status(gim_status status) {
@@ -36,7 +49,7 @@ bool is_gim(const Bytes& file) {
     return !file.empty() && gim_read_info(file.data(), file.size(), nullptr, &info) != GIM_NOT_GIM;
 }
 
-Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level) {
+Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes) {
     gim_info info;
     gim_status status = gim_read_info(file.data(), file.size(), nullptr, &info);
     if (status != GIM_OK) return failed("header", status);
@@ -73,6 +86,11 @@ Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t leve
                                  image.normals.data(), image.texcoords.data(), image.triangles.data(), scratch.data(),
                                  shape.scratch_size);
         if (status != GIM_OK) return failed(what, status);
+        if (planes == WithPlanes::kNo) continue;
+        status = decode_plane(info, file, i, GIM_PLANE_NORMALS, &image.normal_map);
+        if (status != GIM_OK) return failed(what + ", normal map", status);
+        status = decode_plane(info, file, i, GIM_PLANE_COLORS, &image.colors);
+        if (status != GIM_OK) return failed(what + ", colours", status);
     }
     if (reached < level) {
         return Error{Stage::kInput, "level " + std::to_string(level) + ": " + describe_status(GIM_NO_SUCH_LEVEL) +

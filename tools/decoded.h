@@ -11,6 +11,12 @@
 
 namespace gim {
 
+// An attribute plane of one image; its side is its own.
+struct ImagePlane {
+    uint32_t side = 0;          // 0: the file has none
+    std::vector<float> values;  // side*side*3, row-major
+};
+
 // One level of one image. `grid` is the image itself; the mesh is the same surface with the cut closed.
 struct DecodedImage {
     uint32_t side = 0;
@@ -21,12 +27,15 @@ struct DecodedImage {
     std::vector<float> positions;          // fused vertices, 3 floats each
     std::vector<float> normals;            // 3 each
     std::vector<float> texcoords;          // 2 each
+    ImagePlane normal_map;                 // object space, unit length
+    ImagePlane colors;                     // sRGB, 0..1
     std::vector<uint32_t> triangles;       // the same triangles in the same order, index fused vertices
 };
 
 // All images of a file at one level; an image that cannot be so coarse gives its coarsest level.
-// Fails with kNoSuchLevel's message where no image has the level.
-Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level);
+// Fails with kNoSuchLevel's message where no image has the level. Planes, if wanted, come at full resolution whatever the level.
+enum class WithPlanes { kNo, kYes };
+Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes = WithPlanes::kNo);
 
 // All images as one mesh with shared vertices.
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images);

@@ -96,8 +96,10 @@ int run_encode(const EncodeCommand& command) {
         if (!writable.ok()) return report_error(path, writable.error());
     }
 
-    Result<Input> input = read_input(command.input);
+    Result<Input> input = read_input(command.input, Want::kShapeAndColors);
     if (!input.ok()) return report_error(command.input, input.error());
+    for (const std::string& warning : input.value().warnings)
+        std::fprintf(stderr, "gim: %s: warning: %s\n", command.input.c_str(), warning.c_str());
 
     StatePictures pictures(command.debug_folder);
     const bool draws = !command.debug_folder.empty();

@@ -70,7 +70,7 @@ double diagonal_of(const RawImage& image) {
     return std::sqrt(sum);
 }
 
-Result<Input> read_input(const std::string& path) {
+Result<Input> read_input(const std::string& path, Want want) {
     Result<Bytes> file = read_file(path);
     if (!file.ok()) return file.error();
     Bytes& bytes = file.value();
@@ -90,8 +90,12 @@ Result<Input> read_input(const std::string& path) {
         input.raw = std::move(raw.value());
         return input;
     }
-    Result<TriangleMesh> mesh = read_mesh(bytes, input.format, std::filesystem::path(path).parent_path().string());
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    Textures textures(folder);
+    Result<TriangleMesh> mesh =
+        read_mesh(bytes, input.format, folder, want == Want::kShapeAndColors ? &textures : nullptr);
     if (!mesh.ok()) return mesh.error();
+    input.warnings = std::move(textures.warnings);
     input.mesh = std::move(mesh.value());
     return input;
 }

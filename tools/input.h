@@ -33,10 +33,12 @@ struct Input {
     TriangleMesh mesh;                         // kMesh only
     RawImage raw;                              // kRawImage only
     Bytes bytes;                               // kGim only
+    std::vector<std::string> warnings;         // textures that are missing
 };
 
 // Reads the file and decides by content, then by extension.
-Result<Input> read_input(const std::string& path);
+enum class Want { kShape, kShapeAndColors };
+Result<Input> read_input(const std::string& path, Want want = Want::kShape);
 
 // Any of the three as a mesh for comparing and drawing: a .gim decoded at `level`; formats that repeat vertices welded.
 Result<TriangleMesh> read_surface(const std::string& path, uint32_t level);

@@ -61,18 +61,18 @@ std::string_view as_text(std::span<const uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std::string& folder) {
+Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std::string& folder, Textures* textures) {
     switch (format) {
         case MeshFormat::kPly:
-            return read_ply(text);
+            return read_ply(text, textures);
         case MeshFormat::kObj:
-            return read_obj(text);
+            return read_obj(text, textures);
         case MeshFormat::kOff:
             return read_off(text);
         case MeshFormat::kStl:
             return read_stl(text);
         case MeshFormat::kGltf:
-            return read_gltf(text, folder);
+            return read_gltf(text, folder, textures);
         case MeshFormat::kUnknown:
             break;
     }
@@ -106,10 +106,11 @@ std::string_view format_name(MeshFormat format) {
 
 bool repeats_vertices(MeshFormat format) { return format == MeshFormat::kStl || format == MeshFormat::kGltf; }
 
-Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder) {
+Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder,
+                               Textures* textures) {
     const std::string beginning = "not a mesh that gim can read: ";
     if (bytes.empty()) return Error{Stage::kInput, beginning + "the file is empty"};
-    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, folder);
+    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, folder, textures);
     if (!mesh.ok()) {
         const std::string as = format == MeshFormat::kUnknown ? "" : "(as " + std::string(format_name(format)) + ") ";
         return Error{mesh.error().stage, beginning + as + mesh.error().message};

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "gim/encoder.h"
+#include "tools/textures.h"
 
 namespace gim {
 
@@ -31,15 +32,17 @@ std::string_view format_name(MeshFormat format);
 bool repeats_vertices(MeshFormat format);
 
 // Messages do not name the file (the caller does); they begin with "not a mesh that gim can read: ".
-// `folder` is where a .gltf finds its buffers.
-Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder);
+// `folder` is where a .gltf finds its buffers. `textures`: takes warnings, and textures until they are the mesh's; nullptr:
+// only the shape is wanted, colours and textures are left out.
+Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder,
+                               Textures* textures = nullptr);
 
 // One function per format, in read_*.cpp. Messages without the common beginning.
-Result<TriangleMesh> read_ply(std::string_view text);
-Result<TriangleMesh> read_obj(std::string_view text);
+Result<TriangleMesh> read_ply(std::string_view text, Textures* textures);
+Result<TriangleMesh> read_obj(std::string_view text, Textures* textures);
 Result<TriangleMesh> read_off(std::string_view text);
 Result<TriangleMesh> read_stl(std::string_view text);
-Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder);
+Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder, Textures* textures);
 
 // Vertices at exactly equal positions become one (the first), triangles that collapse by it are dropped: two samples that fell
 // on one quantized point are an edge of length zero, not a hole. Order is kept. O(V log V).

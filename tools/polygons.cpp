@@ -1,5 +1,6 @@
 #include "tools/polygons.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gim {
@@ -61,33 +62,56 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<size_t>& left, si
     return true;
 }
 
-void clip_ears(const std::vector<Point2>& flat, std::span<const uint32_t> face,
-               std::vector<std::array<uint32_t, 3>>& triangles) {
-    std::vector<size_t> left(face.size());
+// Three corners of a face, counted within it.
+using LocalTriangle = std::array<uint32_t, 3>;
+
+void clip_ears(const std::vector<Point2>& flat, std::vector<LocalTriangle>& triangles) {
+    std::vector<size_t> left(flat.size());
     for (size_t i = 0; i < left.size(); ++i) left[i] = i;
     while (left.size() > 3) {
         size_t ear = 0;
         while (ear < left.size() && !is_ear(flat, left, ear)) ++ear;
         if (ear == left.size()) ear = 1;  // self-crossing or flat: any triangle is as good
         const size_t n = left.size();
-        triangles.push_back({face[left[(ear + n - 1) % n]], face[left[ear]], face[left[(ear + 1) % n]]});
+        triangles.push_back({static_cast<uint32_t>(left[(ear + n - 1) % n]), static_cast<uint32_t>(left[ear]),
+                             static_cast<uint32_t>(left[(ear + 1) % n])});
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
     }
-    triangles.push_back({face[left[0]], face[left[1]], face[left[2]]});
+    triangles.push_back(
+        {static_cast<uint32_t>(left[0]), static_cast<uint32_t>(left[1]), static_cast<uint32_t>(left[2])});
 }
 
-void add_triangles(const std::vector<std::array<double, 3>>& positions, std::span<const uint32_t> face,
-                   std::vector<std::array<uint32_t, 3>>& triangles) {
+void cut_face(const std::vector<std::array<double, 3>>& positions, std::span<const uint32_t> face,
+              std::vector<LocalTriangle>& triangles) {
+    triangles.clear();
     if (face.size() > 3 && face.size() <= kMaxClippedCorners) {
         const std::vector<Point2> flat = flatten(positions, face);
-        if (!is_convex(flat)) return clip_ears(flat, face, triangles);
+        if (!is_convex(flat)) return clip_ears(flat, triangles);
     }
-    for (size_t i = 2; i < face.size(); ++i) triangles.push_back({face[0], face[i - 1], face[i]});
+    for (uint32_t i = 2; i < face.size(); ++i) triangles.push_back({0, i - 1, i});
+}
+
+// Colours of the triangle made of these corners of a face. first: that of the face in soup.corners.
+void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const LocalTriangle& local,
+                    const std::array<uint32_t, 3>& triangle, Appearance& appearance) {
+    const uint32_t texture = soup.face_texture.empty() ? UINT32_MAX : soup.face_texture[f];
+    if (!soup.face_texture.empty()) appearance.triangle_texture.push_back(texture);
+    if (!soup.corner_texcoords.empty()) {
+        const auto& uv = soup.corner_texcoords;
+        appearance.corner_texcoords.push_back({uv[first + local[0]], uv[first + local[1]], uv[first + local[2]]});
+    }
+    if (!soup.vertex_colors.empty()) {
+        constexpr std::array<float, 3> kWhite = {1, 1, 1};
+        const auto color = [&](uint32_t v) {
+            return texture != UINT32_MAX && !soup.colors_tint_textures ? kWhite : soup.vertex_colors[v];
+        };
+        appearance.corner_colors.push_back({color(triangle[0]), color(triangle[1]), color(triangle[2])});
+    }
 }
 
 }  // namespace
 
-Result<TriangleMesh> triangulate(PolygonSoup soup) {
+Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures) {
     const auto vertex_count = static_cast<int64_t>(soup.positions.size());
     if (soup.positions.empty()) return Error{Stage::kInput, "it has no vertices"};
     if (soup.sizes.empty()) return Error{Stage::kInput, "it has vertices but no faces (a point cloud?)"};
@@ -95,7 +119,14 @@ Result<TriangleMesh> triangulate(PolygonSoup soup) {
 
     TriangleMesh mesh;
     mesh.triangles.reserve(soup.sizes.size());
+    // Texture coordinates without a texture say nothing.
+    if (std::all_of(soup.face_texture.begin(), soup.face_texture.end(), [](uint32_t t) { return t == UINT32_MAX; })) {
+        soup.face_texture.clear();
+        soup.corner_texcoords.clear();
+    }
+    const bool is_colored = !soup.face_texture.empty() || !soup.vertex_colors.empty();
     std::vector<uint32_t> face;
+    std::vector<LocalTriangle> pieces;
     size_t first = 0;
     for (size_t f = 0; f < soup.sizes.size(); ++f) {
         const uint32_t size = soup.sizes[f];
@@ -113,9 +144,14 @@ Result<TriangleMesh> triangulate(PolygonSoup soup) {
             }
             face.push_back(static_cast<uint32_t>(corner));
         }
+        cut_face(soup.positions, face, pieces);
+        for (const LocalTriangle& piece : pieces) {
+            mesh.triangles.push_back({face[piece[0]], face[piece[1]], face[piece[2]]});
+            if (is_colored) add_appearance(soup, f, first, piece, mesh.triangles.back(), mesh.appearance);
+        }
         first += size;
-        add_triangles(soup.positions, face, mesh.triangles);
     }
+    if (!soup.face_texture.empty()) mesh.appearance.textures = std::move(textures);
     mesh.positions = std::move(soup.positions);
     return mesh;
 }

@@ -1,10 +1,13 @@
 // glTF 2: every triangle primitive of every mesh instance of the scene, in world coordinates (node transforms applied).
+// Where colours are wanted: COLOR_0, base-colour texture (without texture transforms) and base-colour factor.
 // Points and lines are skipped; skins and morph targets stay in their rest pose. Compressed files (Draco, meshopt) and
 // sparse accessors are refused with a message.
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <string>
 
@@ -89,6 +92,97 @@ Eigen::Affine3d transform_of(const tinygltf::Node& node) {
     return transform;
 }
 
+float to_srgb(double x) {
+    x = x >= 0 ? std::min(x, 1.0) : 0;
+    return static_cast<float>(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
+}
+
+// The values of an attribute, `width` numbers of each vertex; empty where the primitive does not have it.
+std::vector<double> attribute(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                              const std::string& name, size_t vertices, size_t width) {
+    std::vector<double> values;
+    const auto found = primitive.attributes.find(name);
+    if (found == primitive.attributes.end()) return values;
+    const tinygltf::Accessor& accessor = accessor_of(model, found->second);
+    const int numbers = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
+    if (accessor.count != vertices || numbers < static_cast<int>(width)) throw Failure(name + " does not fit POSITION");
+    size_t stride = 0;
+    const char* bytes = at(model, accessor, stride);
+    const size_t size =
+        static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType)));
+    values.reserve(vertices * width);
+    for (size_t i = 0; i < vertices; ++i, bytes += stride) {
+        for (size_t k = 0; k < width; ++k) {
+            values.push_back(component(bytes + k * size, accessor.componentType, accessor.normalized));
+        }
+    }
+    return values;
+}
+
+// Image files as tinygltf hands them over, decoded when they are asked for.
+class Pictures {
+  public:
+    explicit Pictures(Textures* textures) : textures_(textures) {}
+
+    // nullptr: colours are not wanted.
+    Textures* textures() const { return textures_; }
+    void keep(int image, const unsigned char* bytes, int size) {
+        if (!textures_ || image < 0 || image > 65535) return;
+        if (files_.size() <= static_cast<size_t>(image)) files_.resize(static_cast<size_t>(image) + 1);
+        files_[static_cast<size_t>(image)].assign(bytes, bytes + size);
+    }
+    // The texture of glTF's number; kNoTexture with a warning where it is missing.
+    uint32_t load(const tinygltf::Model& model, int texture) {
+        if (texture < 0 || static_cast<size_t>(texture) >= model.textures.size()) return Textures::kNoTexture;
+        const int image = model.textures[static_cast<size_t>(texture)].source;
+        for (const auto& [known, index] : loaded_) {
+            if (known == image) return index;
+        }
+        const bool is_there = image >= 0 && static_cast<size_t>(image) < files_.size();
+        const std::string name = std::to_string(image) + " of the glTF file";
+        const uint32_t index = textures_->add(
+            is_there ? std::span<const uint8_t>(files_[static_cast<size_t>(image)]) : std::span<const uint8_t>(), name);
+        loaded_.emplace_back(image, index);
+        return index;
+    }
+
+  private:
+    Textures* textures_;
+    std::vector<std::vector<uint8_t>> files_;
+    std::vector<std::pair<int, uint32_t>> loaded_;
+};
+
+// Colours of a primitive's vertices. What it has of its own goes on top of what the soup has of the primitives before.
+struct PrimitiveColors {
+    uint32_t texture = Textures::kNoTexture;
+    std::vector<std::array<float, 2>> texcoords;  // per vertex; empty without texture
+};
+
+PrimitiveColors add_colors(const tinygltf::Model& model, const tinygltf::Primitive& primitive, size_t vertices,
+                           Pictures& pictures, PolygonSoup& soup) {
+    PrimitiveColors colors;
+    std::array<double, 3> factor = {1, 1, 1};
+    if (primitive.material >= 0 && static_cast<size_t>(primitive.material) < model.materials.size()) {
+        const auto& look = model.materials[static_cast<size_t>(primitive.material)].pbrMetallicRoughness;
+        if (look.baseColorFactor.size() >= 3) std::copy_n(look.baseColorFactor.begin(), 3, factor.begin());
+        const std::vector<double> uv =
+            look.baseColorTexture.index < 0
+                ? std::vector<double>()
+                : attribute(model, primitive, "TEXCOORD_" + std::to_string(look.baseColorTexture.texCoord), vertices,
+                            2);
+        if (!uv.empty()) colors.texture = pictures.load(model, look.baseColorTexture.index);
+        for (size_t i = 0; i + 1 < uv.size() && colors.texture != Textures::kNoTexture; i += 2)
+            colors.texcoords.push_back({static_cast<float>(uv[i]), static_cast<float>(uv[i + 1])});
+    }
+    const std::vector<double> own = attribute(model, primitive, "COLOR_0", vertices, 3);
+    for (size_t v = 0; v < vertices; ++v) {
+        std::array<float, 3> color;
+        for (size_t k = 0; k < 3; ++k) color[k] = to_srgb(factor[k] * (own.empty() ? 1 : own[3 * v + k]));
+        soup.vertex_colors.push_back(color);
+    }
+    return colors;
+}
+
 // Calls emit(a, b, c) for the triangles of a primitive whose corners are 0 .. count-1.
 template <class Emit>
 void for_each_triangle(int mode, size_t count, const Emit& emit) {
@@ -102,7 +196,7 @@ void for_each_triangle(int mode, size_t count, const Emit& emit) {
 }
 
 void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const Eigen::Affine3d& transform,
-                   PolygonSoup& soup) {
+                   Pictures& pictures, PolygonSoup& soup) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) return;
     for (const char* extension : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
@@ -126,6 +220,8 @@ void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& prim
         soup.positions.push_back({p.x(), p.y(), p.z()});
     }
 
+    PrimitiveColors colors;
+    if (pictures.textures()) colors = add_colors(model, primitive, points.count, pictures, soup);
     std::vector<int64_t> corners;
     if (primitive.indices >= 0) {
         const tinygltf::Accessor& indices = accessor_of(model, primitive.indices);
@@ -149,10 +245,17 @@ void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& prim
     for_each_triangle(mode, corners.size(), [&](size_t a, size_t b, size_t c) {
         if (mirrored) std::swap(b, c);
         soup.add_face(std::array<int64_t, 3>{base + corners[a], base + corners[b], base + corners[c]});
+        if (!pictures.textures()) return;
+        soup.face_texture.push_back(colors.texture);
+        for (const size_t i : {a, b, c}) {
+            soup.corner_texcoords.push_back(
+                colors.texcoords.empty() ? std::array<float, 2>{} : colors.texcoords[static_cast<size_t>(corners[i])]);
+        }
     });
 }
 
-void add_node(const tinygltf::Model& model, int index, const Eigen::Affine3d& parent, int depth, PolygonSoup& soup) {
+void add_node(const tinygltf::Model& model, int index, const Eigen::Affine3d& parent, int depth, Pictures& pictures,
+              PolygonSoup& soup) {
     if (index < 0 || static_cast<size_t>(index) >= model.nodes.size()) throw Failure("a node is missing");
     if (depth > kMaxNodeDepth) throw Failure("its nodes are nested too deeply (a cycle?)");
     const tinygltf::Node& node = model.nodes[static_cast<size_t>(index)];
@@ -160,10 +263,10 @@ void add_node(const tinygltf::Model& model, int index, const Eigen::Affine3d& pa
     if (node.mesh >= 0) {
         if (static_cast<size_t>(node.mesh) >= model.meshes.size()) throw Failure("a mesh is missing");
         for (const tinygltf::Primitive& primitive : model.meshes[static_cast<size_t>(node.mesh)].primitives) {
-            add_primitive(model, primitive, transform, soup);
+            add_primitive(model, primitive, transform, pictures, soup);
         }
     }
-    for (const int child : node.children) add_node(model, child, transform, depth + 1, soup);
+    for (const int child : node.children) add_node(model, child, transform, depth + 1, pictures, soup);
 }
 
 std::vector<int> root_nodes(const tinygltf::Model& model) {
@@ -185,8 +288,10 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
     return roots;
 }
 
-// Pictures are not needed: accept them unseen.
-bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+// Accepts pictures unseen.
+bool keep_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void* pictures) {
+    static_cast<Pictures*>(pictures)->keep(index, bytes, size);
     return true;
 }
 
@@ -194,11 +299,12 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
-Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder) {
+Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder, Textures* textures) {
     if (text.size() > UINT32_MAX) return Error{Stage::kInput, "glTF files end at 4 GB"};
     try {
         tinygltf::TinyGLTF loader;
-        loader.SetImageLoader(skip_image, nullptr);
+        Pictures pictures(textures);
+        loader.SetImageLoader(keep_image, &pictures);
         tinygltf::Model model;
         std::string error;
         std::string warning;
@@ -211,9 +317,19 @@ Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder)
         if (!loaded) return Error{Stage::kInput, "glTF: " + first_line(error)};
 
         PolygonSoup soup;
-        for (const int root : root_nodes(model)) add_node(model, root, Eigen::Affine3d::Identity(), 0, soup);
+        soup.colors_tint_textures = true;
+        for (const int root : root_nodes(model)) {
+            add_node(model, root, Eigen::Affine3d::Identity(), 0, pictures, soup);
+        }
         if (soup.positions.empty()) return Error{Stage::kInput, "its scene shows no triangles"};
-        return triangulate(std::move(soup));
+        if (!textures) return triangulate(std::move(soup));
+        // White says nothing.
+        if (std::all_of(soup.vertex_colors.begin(), soup.vertex_colors.end(), [](const auto& c) {
+                return c == std::array<float, 3>{1, 1, 1};
+            })) {
+            soup.vertex_colors.clear();
+        }
+        return triangulate(std::move(soup), std::move(textures->images));
     } catch (const std::exception& failure) {
         return Error{Stage::kInput, std::string("glTF: ") + failure.what()};
     }

@@ -1,5 +1,7 @@
 // PLY: ascii, binary_little_endian, binary_big_endian; any property types; unknown elements and properties are skipped.
-// Of the faces it takes vertex_indices (or vertex_index), or the strips of a tristrips element.
+// Of the faces it takes vertex_indices (or vertex_index), or the strips of a tristrips element. Where colours are wanted it
+// takes red, green, blue of the vertices, and texture coordinates of vertices (u v, s t, texture_u texture_v) or face corners
+// (texcoord, texnumber) for the images that "comment TextureFile" names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,6 +33,7 @@ struct Element {
 struct Header {
     Encoding encoding = Encoding::kAscii;
     std::vector<Element> elements;
+    std::vector<std::string_view> textures;
     size_t size = 0;  // bytes, "end_header" line included
 };
 
@@ -124,7 +127,13 @@ Result<Header> read_header(std::string_view text) {
             header.size = in.offset();
             if (!has_format) return bad_header(line, "the format line is missing");
             return header;
-        } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+        } else if (keyword == "comment") {
+            TextScanner ahead = in;
+            if (ahead.word_on_line() != "TextureFile") continue;
+            std::string_view name = ahead.rest_of_line();
+            name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
+            header.textures.push_back(name);
+        } else if (keyword != "obj_info" && !keyword.empty()) {
             return bad_header(line, "unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
         }
     }
@@ -225,9 +234,74 @@ void add_strips(const std::vector<int64_t>& strip, PolygonSoup& soup) {
     }
 }
 
+enum class Role { kNone, kX, kY, kZ, kRed, kGreen, kBlue, kU, kV, kTexture };
+
+Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
+    struct Entry {
+        std::string_view name;
+        Role role;
+    };
+    static constexpr std::array<Entry, 12> kVertexRoles = {{{"x", Role::kX},
+                                                            {"y", Role::kY},
+                                                            {"z", Role::kZ},
+                                                            {"red", Role::kRed},
+                                                            {"green", Role::kGreen},
+                                                            {"blue", Role::kBlue},
+                                                            {"u", Role::kU},
+                                                            {"v", Role::kV},
+                                                            {"s", Role::kU},
+                                                            {"t", Role::kV},
+                                                            {"texture_u", Role::kU},
+                                                            {"texture_v", Role::kV}}};
+    if (!is_vertex) return wants_colors && name == "texnumber" ? Role::kTexture : Role::kNone;
+    for (const Entry& entry : kVertexRoles) {
+        if (entry.name == name && (wants_colors || entry.role <= Role::kZ)) return entry.role;
+    }
+    return Role::kNone;
+}
+
+// 0..1 of a colour channel: integers fill their type.
+float channel(double value, Scalar type) {
+    switch (type) {
+        case Scalar::kU8:
+            return static_cast<float>(value / 255);
+        case Scalar::kU16:
+            return static_cast<float>(value / 65535);
+        default:
+            return static_cast<float>(value);
+    }
+}
+
+bool has_roles(const std::vector<Role>& roles, std::initializer_list<Role> wanted) {
+    return std::all_of(wanted.begin(), wanted.end(),
+                       [&](Role r) { return std::count(roles.begin(), roles.end(), r) == 1; });
+}
+
+// Texture coordinates of a face's corners, v downwards; 0 0 for all where their number is wrong.
+void add_corner_texcoords(const std::vector<float>& uv, size_t corners, PolygonSoup& soup) {
+    const bool fits = uv.size() == 2 * corners;
+    for (size_t i = 0; i < corners; ++i)
+        soup.corner_texcoords.push_back(fits ? std::array<float, 2>{uv[2 * i], 1 - uv[2 * i + 1]}
+                                             : std::array<float, 2>{});
+}
+
+// Reads the textures that the header names, and completes the soup's coordinates in them.
+void add_textures(const Header& header, const std::vector<std::array<float, 2>>& vertex_texcoords,
+                  const std::vector<uint32_t>& face_texture, Textures& textures, PolygonSoup& soup) {
+    std::vector<uint32_t> loaded;
+    for (const std::string_view name : header.textures) loaded.push_back(textures.load(name));
+    for (const uint32_t t : face_texture) soup.face_texture.push_back(t == Textures::kNoTexture ? t : loaded[t]);
+    if (vertex_texcoords.empty()) return;
+    soup.corner_texcoords.clear();
+    for (const int64_t v : soup.corners) {
+        const bool known = v >= 0 && static_cast<size_t>(v) < vertex_texcoords.size();
+        soup.corner_texcoords.push_back(known ? vertex_texcoords[static_cast<size_t>(v)] : std::array<float, 2>{});
+    }
+}
+
 }  // namespace
 
-Result<TriangleMesh> read_ply(std::string_view text) {
+Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
     const Result<Header> parsed = read_header(text);
     if (!parsed.ok()) return parsed.error();
     const Header& header = parsed.value();
@@ -236,6 +310,9 @@ Result<TriangleMesh> read_ply(std::string_view text) {
     Body body(rest, header.encoding);
     PolygonSoup soup;
     std::vector<int64_t> list;
+    std::vector<float> texcoords;                        // of one face
+    std::vector<std::array<float, 2>> vertex_texcoords;  // v downwards
+    std::vector<uint32_t> face_texture;                  // index into header.textures
     bool has_coordinates = false;
     for (const Element& element : header.elements) {
         const size_t least = least_size(element, header.encoding);
@@ -248,31 +325,41 @@ Result<TriangleMesh> read_ply(std::string_view text) {
         const bool is_vertex = element.name == "vertex";
         const bool is_face = element.name == "face";
         const bool is_strip = element.name == "tristrips";
-        std::vector<int> axis_of(element.properties.size(), -1);
-        for (size_t p = 0; is_vertex && p < axis_of.size(); ++p) {
-            const std::string_view name = element.properties[p].name;
-            if (name == "x" || name == "y" || name == "z") axis_of[p] = name[0] - 'x';
+        std::vector<Role> roles;
+        for (const Property& property : element.properties) {
+            const bool single = property.count_type == Scalar::kNone;
+            roles.push_back(single && (is_vertex || is_face) ? role_of(property.name, is_vertex, textures != nullptr)
+                                                             : Role::kNone);
         }
+        const bool has_colors = is_vertex && has_roles(roles, {Role::kRed, Role::kGreen, Role::kBlue});
+        const bool has_texcoords = is_vertex && has_roles(roles, {Role::kU, Role::kV});
         if (is_vertex) {
             soup.positions.reserve(element.count);
-            has_coordinates = std::count_if(axis_of.begin(), axis_of.end(), [](int a) { return a >= 0; }) == 3;
+            has_coordinates = has_roles(roles, {Role::kX, Role::kY, Role::kZ});
         }
+        std::array<double, 10> values = {};  // by role
         for (uint64_t record = 0; record < element.count; ++record) {
-            std::array<double, 3> position = {};
+            values.fill(0);
+            list.clear();
+            texcoords.clear();
             for (size_t p = 0; p < element.properties.size(); ++p) {
                 const Property& property = element.properties[p];
                 if (property.count_type == Scalar::kNone) {
                     const double value = body.next(property.type);
-                    if (axis_of[p] >= 0) position[static_cast<size_t>(axis_of[p])] = value;
+                    const bool is_color = roles[p] >= Role::kRed && roles[p] <= Role::kBlue;
+                    values[static_cast<size_t>(roles[p])] =
+                        is_color ? static_cast<double>(channel(value, property.type)) : value;
                     continue;
                 }
                 const size_t length = body.next_length(property);
                 const bool wanted =
                     (is_face || is_strip) && (property.name == "vertex_indices" || property.name == "vertex_index");
-                list.clear();
+                const bool is_texcoord = textures && is_face && property.name == "texcoord";
+                if (wanted) list.clear();
                 for (size_t i = 0; i < length; ++i) {
                     const double value = body.next(property.type);
                     if (wanted) list.push_back(as_index(value));
+                    if (is_texcoord) texcoords.push_back(static_cast<float>(value));
                 }
                 if (body.failed) break;
                 if (wanted && is_face) soup.add_face(list);
@@ -284,11 +371,32 @@ Result<TriangleMesh> read_ply(std::string_view text) {
                                                 std::to_string(record) + " of " + std::to_string(element.count) +
                                                 " (is the file cut short?)"};
             }
-            if (is_vertex) soup.positions.push_back(position);
+            const auto value_of = [&](Role role) { return values[static_cast<size_t>(role)]; };
+            if (is_vertex) {
+                soup.positions.push_back({value_of(Role::kX), value_of(Role::kY), value_of(Role::kZ)});
+                if (has_colors) {
+                    soup.vertex_colors.push_back({static_cast<float>(value_of(Role::kRed)),
+                                                  static_cast<float>(value_of(Role::kGreen)),
+                                                  static_cast<float>(value_of(Role::kBlue))});
+                }
+                if (has_texcoords) {
+                    vertex_texcoords.push_back(
+                        {static_cast<float>(value_of(Role::kU)), static_cast<float>(1 - value_of(Role::kV))});
+                }
+            }
+            if (is_face && !header.textures.empty() && textures) {
+                if (vertex_texcoords.empty()) add_corner_texcoords(texcoords, list.size(), soup);
+                const double number = value_of(Role::kTexture);
+                const bool known = number >= 0 && number < static_cast<double>(header.textures.size());
+                face_texture.push_back(known ? static_cast<uint32_t>(number) : Textures::kNoTexture);
+            }
         }
     }
     if (!has_coordinates) return Error{Stage::kInput, "its header names no vertices with x, y and z"};
-    return triangulate(std::move(soup));
+    if (!textures) return triangulate(std::move(soup));
+    if (soup.sizes.size() == face_texture.size()) add_textures(header, vertex_texcoords, face_texture, *textures, soup);
+    if (soup.vertex_colors.size() != soup.positions.size()) soup.vertex_colors.clear();
+    return triangulate(std::move(soup), std::move(textures->images));
 }
 
 }  // namespace gim

@@ -1,11 +1,13 @@
 #include "tools/surface_write.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <string>
 
 #include "tools/little_endian.h"
+#include "tools/plane_write.h"
 
 namespace gim {
 namespace {
@@ -64,7 +66,24 @@ std::array<float, 3> facet_normal(const DecodedImage& image, const uint32_t* tri
             static_cast<float>(normal[2] * scale)};
 }
 
+bool has_colors(std::span<const DecodedImage> images) {
+    return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.colors.side > 0; });
+}
+
+// Of a fused vertex, at its first sample; white where the image has no colours.
+std::array<uint8_t, 3> vertex_color(const DecodedImage& image, size_t v) {
+    if (image.colors.side == 0) return {255, 255, 255};
+    const auto last = static_cast<float>(image.side - 1);
+    const auto sample = [&](size_t k) { return static_cast<uint32_t>(std::lround(image.texcoords[2 * v + k] * last)); };
+    return color_at(image.colors, image.side, sample(1), sample(0));
+}
+
 }  // namespace
+
+float texture_coordinate(uint32_t i, uint32_t last, uint32_t side) {
+    const float t = static_cast<float>(i) / static_cast<float>(last);
+    return side == 0 ? t : (t * static_cast<float>(side - 1) + 0.5F) / static_cast<float>(side);
+}
 
 std::optional<SurfaceFormat> surface_format_of(std::string_view extension) {
     if (extension == "ply") return SurfaceFormat::kPly;
@@ -83,13 +102,17 @@ Bytes write_ply(std::span<const DecodedImage> images) {
     append_text(out, std::to_string(vertex_count(images)));
     append_text(out,
                 "\nproperty float x\nproperty float y\nproperty float z\n"
-                "property float nx\nproperty float ny\nproperty float nz\nelement face ");
+                "property float nx\nproperty float ny\nproperty float nz\n");
+    const bool colored = has_colors(images);
+    if (colored) append_text(out, "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+    append_text(out, "element face ");
     append_text(out, std::to_string(triangle_count(images)));
     append_text(out, "\nproperty list uchar int vertex_indices\nend_header\n");
     for (const DecodedImage& image : images) {
         for (size_t v = 0; v < image.positions.size(); v += 3) {
             for (size_t k = 0; k < 3; ++k) append(out, image.positions[v + k]);
             for (size_t k = 0; k < 3; ++k) append(out, image.normals[v + k]);
+            if (colored) append(out, vertex_color(image, v / 3));
         }
     }
     uint32_t base = 0;
@@ -103,22 +126,35 @@ Bytes write_ply(std::span<const DecodedImage> images) {
     return out;
 }
 
-Bytes write_obj(std::span<const DecodedImage> images) {
+Bytes write_obj(std::span<const DecodedImage> images, const std::string& material_file) {
     Bytes out;
     append_text(out, "# decoded by gim\n");
+    if (!material_file.empty()) append_text(out, "mtllib " + material_file + "\n");
+    const bool colored = has_colors(images);
     size_t base = 1;  // OBJ counts from 1
     size_t grid_base =
         1;  // texture coordinates are those of the samples, normals and positions those of the fused vertices
     for (size_t i = 0; i < images.size(); ++i) {
         const DecodedImage& image = images[i];
         append_text(out, "o image" + std::to_string(i) + "\n");
-        for (size_t v = 0; v < image.positions.size(); v += 3) append_row(out, "v", {&image.positions[v], 3});
-        const auto last = static_cast<float>(image.side - 1);
+        if (!material_file.empty()) append_text(out, "usemtl image" + std::to_string(i) + "\n");
+        for (size_t v = 0; v < image.positions.size(); v += 3) {
+            if (!colored) {
+                append_row(out, "v", {&image.positions[v], 3});
+                continue;
+            }
+            std::array<float, 6> row = {};
+            std::copy_n(&image.positions[v], 3, row.begin());
+            const std::array<uint8_t, 3> rgb = vertex_color(image, v / 3);
+            for (size_t k = 0; k < 3; ++k) row[3 + k] = static_cast<float>(rgb[k]) / 255.0F;
+            append_row(out, "v", row);
+        }
+        const uint32_t last = image.side - 1;
         for (uint32_t row = 0; row < image.side; ++row) {
             for (uint32_t column = 0; column < image.side; ++column) {
                 // OBJ puts the origin of textures at the bottom left.
-                const std::array<float, 2> uv = {static_cast<float>(column) / last,
-                                                 1.0F - static_cast<float>(row) / last};
+                const std::array<float, 2> uv = {texture_coordinate(column, last, image.colors.side),
+                                                 1.0F - texture_coordinate(row, last, image.colors.side)};
                 append_row(out, "vt", uv);
             }
         }
@@ -178,7 +214,7 @@ Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> 
         case SurfaceFormat::kPly:
             return write_ply(images);
         case SurfaceFormat::kObj:
-            return write_obj(images);
+            return write_obj(images, options.material_file);
         case SurfaceFormat::kOff:
             return write_off(images);
         case SurfaceFormat::kStl:

@@ -7,9 +7,12 @@
 // parts (EXR), else one mesh.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/decoded.h"
 
@@ -20,19 +23,29 @@ enum class SurfaceFormat { kPly, kObj, kOff, kStl, kGlb, kExr };
 std::optional<SurfaceFormat> surface_format_of(std::string_view extension);
 
 struct SurfaceOptions {
-    bool fused = false;  // GLB only
+    bool fused = false;         // GLB only
+    std::string material_file = {};  // OBJ only: what mtllib names; empty: none
 };
 
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images,
                             const SurfaceOptions& options = {});
 
-// One function per format.
+// One function per format. Colours: PLY and OBJ give them to the vertices, GLB has them as base-colour texture, and a normal
+// map as tangent-space normal texture (both PNG).
 Bytes write_ply(std::span<const DecodedImage> images);  // binary little-endian, with normals
-Bytes write_obj(
-    std::span<const DecodedImage> images);  // with normals and texture coordinates (right on both sides of the cut)
+// With normals and texture coordinates (right on both sides of the cut). Material i of the file is "image<i>".
+Bytes write_obj(std::span<const DecodedImage> images, const std::string& material_file = {});
 Bytes write_off(std::span<const DecodedImage> images);
 Bytes write_stl(std::span<const DecodedImage> images);  // binary
 Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused);
 Result<Bytes> write_exr(std::span<const DecodedImage> images);  // float32 X, Y, Z, mask; ZIP
+
+// side*side triples as three float32 channels of these names.
+Result<Bytes> write_triples_exr(uint32_t side, const std::vector<float>& values,
+                                const std::array<const char*, 3>& channels);
+
+// A texture coordinate so that sample 0 and the last one are centres of the first and last pixel of a side-pixel texture, which
+// is where renderers expect the pixels' values. side 0: 0 and 1 at the ends.
+float texture_coordinate(uint32_t i, uint32_t last, uint32_t side);
 
 }  // namespace gim

@@ -85,6 +85,29 @@ void write_parts(MemoryStream& stream, std::span<const DecodedImage> images) {
 
 }  // namespace
 
+Result<Bytes> write_triples_exr(uint32_t side, const std::vector<float>& values,
+                                const std::array<const char*, 3>& channels) {
+    MemoryStream stream;
+    try {
+        const int last = static_cast<int>(side) - 1;
+        const Imath::Box2i window(Imath::V2i(0, 0), Imath::V2i(last, last));
+        Imf::Header header(window, window);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        Imf::FrameBuffer frame;
+        for (size_t k = 0; k < 3; ++k) {
+            header.channels().insert(channels[k], Imf::Channel(Imf::FLOAT));
+            frame.insert(channels[k], Imf::Slice(Imf::FLOAT, base_of(values.data() + k), 3 * sizeof(float),
+                                                 3 * sizeof(float) * size_t{side}));
+        }
+        Imf::OutputFile file(stream, header);
+        file.setFrameBuffer(frame);
+        file.writePixels(static_cast<int>(side));
+    } catch (const std::exception& failure) {
+        return Error{Stage::kWrite, std::string("OpenEXR: ") + failure.what()};
+    }
+    return std::move(stream.bytes);
+}
+
 Result<Bytes> write_exr(std::span<const DecodedImage> images) {
     MemoryStream stream;
     try {

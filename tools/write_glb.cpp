@@ -1,10 +1,13 @@
-// glTF 2.0 binary: one buffer, one mesh and node per image.
+// glTF 2.0 binary: one buffer, one mesh, node and material per image; planes as PNG textures in the buffer.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/little_endian.h"
+#include "tools/plane_write.h"
+#include "tools/stb.h"
 #include "tools/surface_write.h"
+#include "tools/tangent_space.h"
 
 namespace gim {
 namespace {
@@ -25,6 +28,19 @@ struct Buffer {
     Bytes bytes;
     json views = json::array();
     json accessors = json::array();
+    json textures = json::array();  // texture i is image i
+    json pictures = json::array();
+
+    // A PNG of rgb pixels as a texture; its index.
+    size_t add_texture(const std::vector<uint8_t>& rgb, uint32_t side) {
+        const Bytes png = png_bytes(rgb.data(), side, side);
+        views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", png.size()}});
+        bytes.insert(bytes.end(), png.begin(), png.end());
+        while (bytes.size() % 4 != 0) bytes.push_back(0);
+        pictures.push_back({{"bufferView", views.size() - 1}, {"mimeType", "image/png"}});
+        textures.push_back({{"source", pictures.size() - 1}, {"sampler", 0}});
+        return textures.size() - 1;
+    }
 
     template <class T>
     size_t add(const std::vector<T>& values, int width, const char* type, int component, int target) {
@@ -62,14 +78,15 @@ std::vector<float> without_zeros(std::vector<float> normals) {
     return normals;
 }
 
-std::vector<float> grid_texcoords(uint32_t side) {
+// texture: side of the texture in pixels; 0: none.
+std::vector<float> grid_texcoords(uint32_t side, uint32_t texture) {
     std::vector<float> uv;
     uv.reserve(size_t{2} * side * side);
-    const auto last = static_cast<float>(side - 1);
+    const uint32_t last = side - 1;
     for (uint32_t row = 0; row < side; ++row) {
         for (uint32_t column = 0; column < side; ++column) {
-            uv.push_back(static_cast<float>(column) / last);
-            uv.push_back(static_cast<float>(row) / last);
+            uv.push_back(texture_coordinate(column, last, texture));
+            uv.push_back(texture_coordinate(row, last, texture));
         }
     }
     return uv;
@@ -85,6 +102,31 @@ void append_chunk(Bytes& out, uint32_t type, const Bytes& bytes) {
     out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
+json plain_material() {
+    return {{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}};
+}
+
+// Textures of an image's planes: adds texture coordinates and tangents to the attributes, and the textures to the material.
+void add_planes(const DecodedImage& image, Buffer& buffer, json& attributes, json& material) {
+    const uint32_t first = image.colors.side > 0 ? image.colors.side : image.normal_map.side;
+    attributes["TEXCOORD_0"] = buffer.add(grid_texcoords(image.side, first), 2, "VEC2", kFloat, kArrayBuffer);
+    if (image.colors.side > 0) {
+        material["pbrMetallicRoughness"]["baseColorTexture"] = {
+            {"index", buffer.add_texture(color_pixels(image.colors), image.colors.side)}};
+    }
+    if (image.normal_map.side > 0) {
+        const std::vector<float> tangents = grid_tangents(image);
+        attributes["TANGENT"] = buffer.add(tangents, 4, "VEC4", kFloat, kArrayBuffer);
+        const std::vector<uint8_t> map = tangent_space_map(image, tangents, image.normal_map);
+        material["normalTexture"] = {{"index", buffer.add_texture(map, image.normal_map.side)}};
+        if (image.normal_map.side != first) {
+            attributes["TEXCOORD_1"] =
+                buffer.add(grid_texcoords(image.side, image.normal_map.side), 2, "VEC2", kFloat, kArrayBuffer);
+            material["normalTexture"]["texCoord"] = 1;
+        }
+    }
+}
+
 }  // namespace
 
 Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
@@ -92,24 +134,33 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
     json meshes = json::array();
     json nodes = json::array();
     json roots = json::array();
+    json materials = json::array();
     for (size_t i = 0; i < images.size(); ++i) {
         const DecodedImage& image = images[i];
         const std::vector<float>& positions = fused ? image.positions : image.grid;
         json attributes;
+        json material = plain_material();
         attributes["POSITION"] = buffer.add(positions, 3, "VEC3", kFloat, kArrayBuffer);
         add_bounds(buffer.accessors.back(), positions);
         attributes["NORMAL"] =
             buffer.add(without_zeros(fused ? image.normals : image.grid_normals), 3, "VEC3", kFloat, kArrayBuffer);
         if (!fused) {
-            attributes["TEXCOORD_0"] = buffer.add(grid_texcoords(image.side), 2, "VEC2", kFloat, kArrayBuffer);
+            add_planes(image, buffer, attributes, material);
+        }
+        // Images without textures share one.
+        auto same = std::find(materials.begin(), materials.end(), material);
+        if (same == materials.end()) {
+            materials.push_back(material);
+            same = materials.end() - 1;
         }
         const size_t indices =
             buffer.add(fused ? image.triangles : image.grid_triangles, 1, "SCALAR", kUnsignedInt, kElementArrayBuffer);
         const std::string name = "image" + std::to_string(i);
-        meshes.push_back(
-            {{"name", name},
-             {"primitives",
-              json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}}})}});
+        meshes.push_back({{"name", name},
+                          {"primitives", json::array({{{"attributes", attributes},
+                                                       {"indices", indices},
+                                                       {"material", same - materials.begin()},
+                                                       {"mode", 4}}})}});
         nodes.push_back({{"name", name}, {"mesh", i}});
         roots.push_back(i);
     }
@@ -121,8 +172,16 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
     document["scenes"] = json::array({{{"nodes", roots}}});
     document["nodes"] = nodes;
     document["meshes"] = meshes;
-    document["materials"] = json::array(
-        {{{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}}});
+    document["materials"] = materials;
+    if (!buffer.textures.empty()) {
+        document["textures"] = buffer.textures;
+        document["images"] = buffer.pictures;
+        constexpr int kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
+        document["samplers"] = json::array({{{"magFilter", kLinear},
+                                             {"minFilter", kLinearMipmapLinear},
+                                             {"wrapS", kClampToEdge},
+                                             {"wrapT", kClampToEdge}}});
+    }
     document["accessors"] = buffer.accessors;
     document["bufferViews"] = buffer.views;
     document["buffers"] = json::array({{{"byteLength", buffer.bytes.size()}}});

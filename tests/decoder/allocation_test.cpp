@@ -39,7 +39,8 @@ namespace {
 
 TEST(Allocation, NoCallOfTheDecoderAllocates) {
 #if GIM_COUNTS_MALLOC
-    for (const char* name : {"sphere-33-lossy", "torus-17-lossless", "two-images-lossless", "text-zstd"}) {
+    for (const char* name :
+         {"sphere-33-lossy", "torus-17-lossless", "two-images-lossless", "text-zstd", "planes-sphere-17"}) {
         const auto bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
         ASSERT_FALSE(bytes.empty());
         gim_info info;
@@ -74,6 +75,10 @@ TEST(Allocation, NoCallOfTheDecoderAllocates) {
                                     room) != GIM_OK;
         failures += gim_decode_grid(&info, b, size, 0, 0, x.data(), n.data(), t.data(), scratch.data(), room) != GIM_OK;
         failures += gim_read_text(&info, b, size, text.data(), text.size(), &text_size, scratch.data(), room) != GIM_OK;
+        gim_plane_info plane;
+        if (gim_read_plane_info(&info, b, size, 0, GIM_PLANE_COLORS, 0, &plane) == GIM_OK)
+            failures +=
+                gim_decode_plane(&info, b, size, 0, GIM_PLANE_COLORS, 0, x.data(), scratch.data(), room) != GIM_OK;
         const uint64_t after = allocations;
         EXPECT_GE(counted, 1u);
         EXPECT_EQ(after - before, counted);

@@ -1,0 +1,26 @@
+// Attribute planes as picture files of their own.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/decoded.h"
+
+namespace gim {
+
+// sRGB colours as 8-bit rgb, one pixel per sample, top row first.
+std::vector<uint8_t> color_pixels(const ImagePlane& colors);
+Result<Bytes> write_color_png(const ImagePlane& colors);
+
+// Object-space normals, n -> round(32767.5 * (1 + n)) in 16 bits.
+Result<Bytes> write_normal_png(const ImagePlane& normals);
+
+// OpenEXR, float32: object-space normals as channels X Y Z; colours, linear, as R G B.
+Result<Bytes> write_normal_exr(const ImagePlane& normals);
+Result<Bytes> write_color_exr(const ImagePlane& colors);
+
+// The colour at a sample of a grid of another side.
+std::array<uint8_t, 3> color_at(const ImagePlane& colors, uint32_t side, uint32_t row, uint32_t column);
+
+}  // namespace gim
