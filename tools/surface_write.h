@@ -23,7 +23,7 @@ enum class SurfaceFormat { kPly, kObj, kOff, kStl, kGlb, kExr };
 std::optional<SurfaceFormat> surface_format_of(std::string_view extension);
 
 struct SurfaceOptions {
-    bool fused = false;         // GLB only
+    bool fused = false;              // GLB only
     std::string material_file = {};  // OBJ only: what mtllib names; empty: none
 };
 

@@ -133,10 +133,10 @@ enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
 typedef struct gim_plane_info {
     uint32_t side;           /* samples per side at this level, 2^j + 1; independent of the image's side */
     uint32_t coarsest_level; /* of the plane: level L has every 2^L-th sample's place */
-    float quantizer;         /* quantizer step: colours in 1/255, normals in 1/1024 of a unit vector as gim writes them */
-    uint64_t stream_size;    /* bytes of this image's plane in the file */
-    uint64_t prefix_size;    /* bytes of the file, from its start, that the plane needs */
-    uint64_t scratch_size;   /* bytes of scratch for gim_decode_plane on this level */
+    float quantizer;       /* quantizer step: colours in 1/255, normals in 1/1024 of a unit vector as gim writes them */
+    uint64_t stream_size;  /* bytes of this image's plane in the file */
+    uint64_t prefix_size;  /* bytes of the file, from its start, that the plane needs */
+    uint64_t scratch_size; /* bytes of scratch for gim_decode_plane on this level */
 } gim_plane_info;
 
 /* level: of the plane, 0 = full resolution. GIM_NO_SUCH_PLANE where the file has none of that kind (told by the index alone),
