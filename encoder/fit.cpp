@@ -10,7 +10,7 @@
 // normal where the closest point is inside a face, else the direction to it; T projects on the tangent plane and x_i,
 // x_j run over grid edges; then step as far as the guard allows: no face may turn further away from the reference's
 // normal once it is steep. lambda falls from round to round, and the number of samples rises. Where the start has folds,
-// the guard sleeps through the first half of the rounds: it would hold stuck samples where they are.
+// the first rounds begin with unfolding: the samples around them are relaxed along the surface.
 //
 // Everything runs in a frame where the reference's bounding box has diagonal 1.
 #include "encoder/fit.h"
@@ -19,6 +19,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "encoder/closest_point.h"
 #include "encoder/grid_surface.h"
@@ -36,7 +37,11 @@ constexpr double kDamping = 0.001;        // mu
 constexpr double kSteepest = 0.1;         // cosine below which the guard wakes up
 constexpr double kUnsuspicious = 0.7;     // cosine above which the guard believes a face without looking twice
 constexpr int kMostHalvings = 8;
-constexpr int kMostFreezings = 16;  // further rounds of the guard, in which steps are not halved but given up
+constexpr double kUnfolded = 0.2;      // cosine that unfolding is content with
+constexpr int kUnfoldPasses = 4;       // in each round that unfolds
+constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
+constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of these rounds
+constexpr int kMostFreezings = 16;     // further rounds of the guard, in which steps are not halved but given up
 
 struct Schedule {
     double first_lambda, last_lambda;
@@ -332,6 +337,21 @@ class Fitter {
     const std::vector<bool>& held() const { return held_; }
     FitQuality quality() const { return measure(x_, side_, gluing_, reference_, held_, front_); }
 
+    // Where faces look away from the surface, slides the samples around them along it towards the middle of their
+    // neighbours. Sampling leaves such faces where the map squeezes the surface: its rows are then nearer to each other
+    // than the map of a triangle mesh is smooth. Samples stay near where they were, or those at a tip would slide off it.
+    void unfold() {
+        const std::vector<Vec3> origin = x_;
+        for (int pass = 0; pass < kUnfoldPasses; ++pass) {
+            const ImageSurface image(x_, side_, gluing_);
+            const std::vector<uint32_t> steep = steep_cells(image);
+            if (steep.empty()) break;
+            double area = 0;
+            for (const double a : image.areas) area += a;
+            relax(samples_around(steep), origin, kUnfoldReach * std::sqrt(area / static_cast<double>(x_.size())));
+        }
+    }
+
     void round(double lambda, double density, uint64_t seed, bool guarded) {
         const ImageSurface image(x_, side_, gluing_);
         find_vertex_frames(image);
@@ -346,6 +366,83 @@ class Fitter {
     }
 
   private:
+    // Cells with a face that looks, at its centre, away from the reference or nearly so.
+    std::vector<uint32_t> steep_cells(const ImageSurface& image) {
+        std::vector<uint8_t> is_steep(image.normals.size() / 2);
+        parallel_blocks(is_steep.size(), 1024, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t f = 2 * begin; f < 2 * end; ++f) {
+                const Triangle& t = image.mesh.triangles[f];
+                if (touches(t, held_)) continue;
+                const auto cosine = [&] { return front_ * image.normals[f].dot(reference_.normals[face_hint_[f]]); };
+                if (face_hint_[f] != kNone && cosine() > kUnsuspicious) continue;
+                face_hint_[f] = reference_.tree.find((x_[t[0]] + x_[t[1]] + x_[t[2]]) / 3, face_hint_[f]).triangle;
+                if (cosine() < kUnfolded) is_steep[f / 2] = 1;
+            }
+        });
+        std::vector<uint32_t> steep;
+        for (uint32_t cell = 0; cell < is_steep.size(); ++cell) {
+            if (is_steep[cell]) steep.push_back(cell);
+        }
+        return steep;
+    }
+
+    // The corners of cells and of the cells next to them, one sample of each class, ascending; without those that may
+    // not slide.
+    std::vector<uint32_t> samples_around(const std::vector<uint32_t>& cells) const {
+        std::vector<bool> inside(x_.size(), false);
+        for (const uint32_t cell : cells) {
+            const uint32_t row = cell / (side_ - 1), column = cell % (side_ - 1);
+            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 2, side_ - 1); ++r) {
+                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 2, side_ - 1); ++c)
+                    inside[gluing_.representative[r * side_ + c]] = true;
+            }
+        }
+        std::vector<uint32_t> samples;
+        for (uint32_t v = 0; v < inside.size(); ++v) {
+            if (inside[v] && !fixed_[v] && !gluing_.on_input_boundary[v]) samples.push_back(v);
+        }
+        return samples;
+    }
+
+    // The samples that are the same surface point as v.
+    std::span<const uint32_t> class_around(const uint32_t& v) const {
+        if (gluing_.class_of[v] == kNone) return {&v, 1};
+        return gluing_.shared[gluing_.class_of[v]];
+    }
+
+    // Moves samples half-way to the mean of their neighbours in rows and columns, along the reference, and no further
+    // than `reach` from their origin.
+    void relax(const std::vector<uint32_t>& samples, const std::vector<Vec3>& origin, double reach) {
+        std::vector<Vec3> target(samples.size());
+        parallel_blocks(samples.size(), 512, 0, [&](size_t, size_t begin, size_t end) {
+            uint32_t hint = kNone;
+            for (size_t k = begin; k < end; ++k) {
+                const uint32_t v = samples[k];
+                Vec3 sum = Vec3::Zero();
+                double count = 0;
+                const auto add = [&](uint32_t w) {
+                    sum += x_[w] - x_[v];
+                    count += 1;
+                };
+                for (const uint32_t u : class_around(v)) {
+                    const uint32_t row = u / side_, column = u % side_;
+                    if (row > 0) add(u - side_);
+                    if (row + 1 < side_) add(u + side_);
+                    if (column > 0) add(u - 1);
+                    if (column + 1 < side_) add(u + 1);
+                }
+                hint = reference_.tree.find(x_[v], hint).triangle;
+                const Vec3& normal = reference_.normals[hint];
+                Vec3 travel = x_[v] + 0.5 / count * (sum - sum.dot(normal) * normal) - origin[v];
+                if (travel.norm() > reach) travel *= reach / travel.norm();
+                target[k] = reference_.tree.find(origin[v] + travel, hint).point;
+            }
+        });
+        for (size_t k = 0; k < samples.size(); ++k) {
+            for (const uint32_t u : class_around(samples[k])) x_[u] = target[k];
+        }
+    }
+
     // Area and normal at the samples, over the whole fan of a class.
     void find_vertex_frames(const ImageSurface& image) {
         vertex_area_.assign(x_.size(), 0);
@@ -601,16 +698,21 @@ bool no_worse(const FitQuality& after, const FitQuality& before) {
            after.folds <= before.folds;
 }
 
-// Runs the whole schedule. The first `unguarded` rounds may fold faces over: samples that are stuck in a bad place get out
-// of it, and the guarded rounds that follow unfold more than these have folded.
-void run_schedule(Fitter& fitter, const Schedule& schedule, uint32_t unguarded, uint64_t seed,
-                  const Progress& progress) {
+// What the first rounds do besides.
+struct Plan {
+    uint32_t unfolding;  // so many rounds begin with unfolding
+    uint32_t unguarded;  // so many rounds may fold faces over: samples that are stuck in a bad place get out of it, and
+                         // the guarded rounds that follow unfold more than these have folded
+};
+
+void run_schedule(Fitter& fitter, const Schedule& schedule, const Plan& plan, uint64_t seed, const Progress& progress) {
     for (uint32_t k = 0; k < schedule.rounds; ++k) {
         if (progress) progress(Stage::kFit, static_cast<double>(k) / schedule.rounds);
         const double t = schedule.rounds > 1 ? static_cast<double>(k) / (schedule.rounds - 1) : 1.0;
         const double lambda = schedule.first_lambda * std::pow(schedule.last_lambda / schedule.first_lambda, t);
         const double density = schedule.first_density + t * (schedule.last_density - schedule.first_density);
-        fitter.round(lambda, density, mix_bits(seed) + 2 * k, k >= unguarded);
+        if (k < plan.unfolding) fitter.unfold();
+        fitter.round(lambda, density, mix_bits(seed) + 2 * k, k >= plan.unguarded);
     }
 }
 
@@ -623,15 +725,15 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
     const FitQuality before = untouched.quality();
     const Schedule schedule = schedule_of(options);
 
-    // An image without folds is kept so from the first round on. Elsewhere that is the second try.
+    // An image without folds is kept so from the first round on. Where unfolding costs accuracy, the folds stay.
+    std::vector<Plan> plans = {{0, 0}};
+    if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
     Fitted result;
     result.image = start;
     FitQuality after = before;
-    std::vector<uint32_t> tries = {0};
-    if (before.folds > 0) tries = {schedule.rounds / 2, 0};
-    for (const uint32_t unguarded : tries) {
+    for (size_t k = 0; k < plans.size(); ++k) {
         Fitter fitter = untouched;
-        run_schedule(fitter, schedule, unguarded, options.seed, unguarded == tries.front() ? progress : Progress{});
+        run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
         result.rounds += schedule.rounds;
         const FitQuality reached = fitter.quality();
         if (!no_worse(reached, before)) continue;

@@ -32,7 +32,11 @@ struct FitOptions {
 struct FitQuality {
     double to_image = 0;      // reference -> image
     double to_reference = 0;  // image -> reference
-    uint64_t folds = 0;       // faces that look away from the reference at their centre
+    // Faces that look away from the reference at their centre. On scanned models most of a sampled image's folds are
+    // slivers, a tenth of a spacing high and two wide, that lie flat in the surface but upside down: rows of samples that
+    // cross where the map squeezes the surface. A closest point on another sheet is no noticeable part of the count: the
+    // face under the centre in the parametrization gives the same answer but for 1 to 3 % of them (block: 9 %).
+    uint64_t folds = 0;
 };
 
 struct Fitted {

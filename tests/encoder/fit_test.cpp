@@ -133,6 +133,24 @@ TEST(Fit, LooseSamplesFindTheCrease) {
     EXPECT_GT(decibels(loose.value().after.to_image, stiff.value().after.to_image), 3);
 }
 
+// Rows squeezed together in pairs, with samples of a pair exchanged: slivers that lie in the surface upside down.
+TEST(Fit, SqueezedRowsThatCrossAreUnfolded) {
+    const Mesh reference = bumpy_torus();
+    GeometryImage start = image_on(reference, 65);
+    for (uint32_t row = 5; row < 60; row += 4) {
+        for (uint32_t column = 2; column < 63; ++column) {
+            start.at(row, column) = 0.1 * start.at(row, column) + 0.9 * start.at(row - 1, column);
+            if (column % 3 == 0) std::swap(start.at(row, column), start.at(row - 1, column));
+        }
+    }
+    for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
+        const auto result = fit(start, reference, {.strength = strength});
+        ASSERT_TRUE(result.ok());
+        EXPECT_GT(result.value().before.folds, 300u);
+        EXPECT_EQ(result.value().after.folds, 0u);
+    }
+}
+
 TEST(Fit, AnImageThatCannotBeBetteredComesBackUnchanged) {
     const GeometryImage start =
         image_of(17, open_sideband(), [](double u, double v) { return Vec3(0.1 * u, 0.1 * v, 0); });
