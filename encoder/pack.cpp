@@ -1,0 +1,412 @@
+#include "encoder/pack.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "encoder/parallel.h"
+#include "encoder/result.h"
+#include "encoder/surface_samples.h"
+
+namespace gim {
+
+namespace {
+
+// A chart in one orientation, as runs of samples, longest first: the long ones rule positions out soonest.
+struct Piece {
+    struct Run {
+        uint32_t row, column, length;
+    };
+    uint32_t width = 0, height = 0;
+    double centre = 0;  // mean row of its samples
+    std::vector<Run> runs;
+    ChartMask chart;
+};
+
+Piece make_piece(ChartMask chart) {
+    Piece piece;
+    const SampleMask& mask = chart.mask;
+    piece.width = mask.width;
+    piece.height = mask.height;
+    for (uint32_t row = 0; row < mask.height; ++row) {
+        for (uint32_t column = 0; column < mask.width; ++column) {
+            if (!mask.at(column, row)) continue;
+            const uint32_t first = column;
+            while (mask.at(column, row)) ++column;
+            piece.runs.push_back({row, first, column - first});
+            piece.centre += static_cast<double>(row) * (column - first) / chart.defined;
+        }
+    }
+    std::stable_sort(piece.runs.begin(), piece.runs.end(),
+                     [](const Piece::Run& a, const Piece::Run& b) { return a.length > b.length; });
+    piece.chart = std::move(chart);
+    return piece;
+}
+
+using Shape = std::vector<Piece>;  // one piece per usable orientation
+
+// A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set when any of the 2^k samples from x on
+// is taken or next to a taken one.
+class Strip {
+  public:
+    Strip(uint32_t width, uint32_t height)
+        : width_(width),
+          height_(height),
+          words_(width / 64 + 1),
+          levels_(static_cast<uint32_t>(std::bit_width(width))) {
+        bits_.assign(size_t{levels_} * height_ * words_, 0);
+    }
+    uint32_t height() const { return height_; }
+
+    // Columns of `row` at which the piece's first sample may not lie, as bits; false when that is all of them.
+    bool free_columns(const Piece& piece, uint32_t row, std::vector<uint64_t>& blocked) const {
+        blocked.resize(words_);
+        const uint32_t last = width_ - piece.width;
+        for (uint32_t w = 0; w < words_; ++w) blocked[w] = ~low_bits(w, last + 1);
+        size_t countdown = 4;
+        for (const Piece::Run& run : piece.runs) {
+            const uint32_t k = static_cast<uint32_t>(std::bit_width(run.length)) - 1;
+            const uint64_t* source = level(k, row + run.row);
+            or_shifted(blocked, source, run.column);
+            if (run.length > (1u << k)) or_shifted(blocked, source, run.column + run.length - (1u << k));
+            if (--countdown == 0) {
+                countdown = 4;
+                if (all_set(blocked)) return false;
+            }
+        }
+        return !all_set(blocked);
+    }
+
+    void put(const Piece& piece, uint32_t column, uint32_t row) {
+        for (const Piece::Run& run : piece.runs) {
+            const uint32_t y = row + run.row, x = column + run.column;
+            set(y, x > 0 ? x - 1 : 0, std::min(x + run.length + 1, width_));
+            if (y > 0) set(y - 1, x, x + run.length);
+            if (y + 1 < height_) set(y + 1, x, x + run.length);
+        }
+        for (uint32_t y = row > 0 ? row - 1 : 0; y < std::min(row + piece.height + 1, height_); ++y) update_levels(y);
+    }
+
+  private:
+    uint64_t* level(uint32_t k, uint32_t row) { return bits_.data() + (size_t{k} * height_ + row) * words_; }
+    const uint64_t* level(uint32_t k, uint32_t row) const {
+        return bits_.data() + (size_t{k} * height_ + row) * words_;
+    }
+    // The bits below position `end`, of word w.
+    static uint64_t low_bits(uint32_t w, uint32_t end) {
+        if (end <= w * 64) return 0;
+        return end >= w * 64 + 64 ? ~uint64_t{0} : (uint64_t{1} << (end - w * 64)) - 1;
+    }
+    static bool all_set(const std::vector<uint64_t>& words) {
+        return std::all_of(words.begin(), words.end(), [](uint64_t w) { return w == ~uint64_t{0}; });
+    }
+    void set(uint32_t row, uint32_t begin, uint32_t end) {
+        uint64_t* words = level(0, row);
+        for (uint32_t w = begin / 64; w <= (end - 1) / 64; ++w) words[w] |= low_bits(w, end) & ~low_bits(w, begin);
+    }
+    void or_shifted(std::vector<uint64_t>& into, const uint64_t* from_words, uint32_t shift) const {
+        const uint32_t skip = shift / 64, bits = shift % 64;
+        for (uint32_t w = 0; w + skip < words_; ++w) {
+            uint64_t value = from_words[w + skip] >> bits;
+            if (bits != 0 && w + skip + 1 < words_) value |= from_words[w + skip + 1] << (64 - bits);
+            into[w] |= value;
+        }
+    }
+    void update_levels(uint32_t row) {
+        for (uint32_t k = 1; k < levels_; ++k) {
+            const uint64_t* below = level(k - 1, row);
+            uint64_t* here = level(k, row);
+            const uint32_t shift = 1u << (k - 1), skip = shift / 64, bits = shift % 64;
+            for (uint32_t w = 0; w < words_; ++w) {
+                uint64_t value = below[w];
+                if (w + skip < words_) value |= below[w + skip] >> bits;
+                if (bits != 0 && w + skip + 1 < words_) value |= below[w + skip + 1] << (64 - bits);
+                here[w] = value;
+            }
+        }
+    }
+
+    uint32_t width_, height_, words_, levels_;
+    std::vector<uint64_t> bits_;
+};
+
+struct Spot {
+    uint32_t orientation = 0, column = 0, row = 0;
+};
+
+// How one packing is made: the strip's width, the order of the charts, and what "low" means for each: 1, the lowest top
+// edge; 0, the lowest centre of gravity.
+struct Recipe {
+    uint32_t width = 0;
+    std::vector<uint32_t> order;
+    std::vector<float> top_weight;
+};
+
+struct Attempt {
+    std::vector<Spot> spots;  // empty: higher than the limit
+    uint32_t height = 0;
+    double crowding = 0;  // mean top edge, of equal heights the lower is the better
+};
+
+// Puts each chart as low as it goes, then as far left. Gives up above `limit` rows.
+Attempt try_recipe(const std::vector<Shape>& shapes, const Recipe& recipe, uint32_t limit) {
+    Strip strip(recipe.width, limit);
+    Attempt attempt;
+    attempt.spots.resize(shapes.size());
+    std::vector<uint64_t> blocked;
+    for (const uint32_t c : recipe.order) {
+        double best_cost = std::numeric_limits<double>::infinity();
+        Spot best;
+        const double weight = recipe.top_weight[c];
+        for (uint32_t o = 0; o < shapes[c].size(); ++o) {
+            const Piece& piece = shapes[c][o];
+            if (piece.width > recipe.width) continue;
+            const double offset = weight * piece.height + (1 - weight) * piece.centre;
+            for (uint32_t row = 0; row + piece.height <= limit && row + offset < best_cost; ++row) {
+                if (!strip.free_columns(piece, row, blocked)) continue;
+                uint32_t column = 0;
+                while ((blocked[column / 64] >> (column % 64)) & 1) ++column;
+                best_cost = row + offset;
+                best = {o, column, row};
+                break;
+            }
+        }
+        if (!std::isfinite(best_cost)) return {};
+        const Piece& piece = shapes[c][best.orientation];
+        strip.put(piece, best.column, best.row);
+        attempt.spots[c] = best;
+        attempt.height = std::max(attempt.height, best.row + piece.height);
+        attempt.crowding += (best.row + piece.height) / static_cast<double>(shapes.size());
+    }
+    return attempt;
+}
+
+class Packer {
+  public:
+    Packer(const std::vector<PackShape>& shapes, const PackOptions& options)
+        : input_(shapes), options_(options), random_(mix_bits(options.seed)) {}
+
+    Result<Packing> run(const Progress& progress) {
+        double area = 0;
+        for (const PackShape& shape : input_)
+            area += polygon_area(shape.border) * shape.magnification * shape.magnification;
+        if (!(area > 0)) return Error{Stage::kSample, "the charts have no area to pack"};
+        // Search at one scale for the recipe with the smallest rectangle ...
+        double scale = std::sqrt(0.75 * options_.most_samples / area);
+        if (!rasterize(scale)) return report_broken();
+        std::vector<Candidate> best = explore(progress);
+        if (best.empty()) return no_room();
+        // ... then enlarge the charts until it is just as large as allowed.
+        double low = 0, high = std::numeric_limits<double>::infinity();
+        std::optional<Packing> packed;
+        scale *= std::sqrt(options_.most_samples / best[0].area());
+        for (int round = 0; round < 40 && high / std::max(low, 1e-300) > 1 + kFinestScaleStep; ++round) {
+            if (!rasterize(scale)) return report_broken();
+            auto found = fit_bound(best, scale);
+            if (found) {
+                low = scale;
+                packed = std::move(found);
+                scale = std::isfinite(high) ? (low + high) / 2 : scale * 1.006;
+            } else {
+                high = scale;
+                scale = low > 0 ? (low + high) / 2 : scale * 0.99;
+            }
+        }
+        if (!packed) return no_room();
+        return std::move(*packed);
+    }
+
+  private:
+    static constexpr double kFinestScaleStep = 0.0007;
+
+    struct Candidate {
+        Recipe recipe;
+        uint32_t height = 0;
+        double crowding = 0;
+        double area() const { return static_cast<double>(recipe.width) * height; }
+        bool operator<(const Candidate& o) const {
+            return area() != o.area() ? area() < o.area() : crowding < o.crowding;
+        }
+    };
+
+    Error no_room() const {
+        return {Stage::kSample, "the charts do not fit into " + std::to_string(options_.most_samples) +
+                                    " samples; ask for more samples or fewer charts"};
+    }
+    static double polygon_area(const std::vector<Vec2>& p) {
+        double area = 0;
+        for (size_t i = 0; i < p.size(); ++i) {
+            const Vec2 &a = p[i], &b = p[(i + 1) % p.size()];
+            area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+        }
+        return area;
+    }
+    uint32_t random(uint32_t count) {
+        random_ = mix_bits(random_);
+        return static_cast<uint32_t>(random_ % count);
+    }
+
+    // All charts in all orientations. A chart with no usable one grows by itself.
+    bool rasterize(double scale) {
+        shapes_.assign(input_.size(), {});
+        std::vector<uint8_t> broken(input_.size(), 0);
+        parallel_blocks(input_.size(), 1, options_.threads, [&](size_t, size_t begin, size_t end) {
+            for (size_t c = begin; c < end; ++c) {
+                // A border that is too short grows with the chart; an inlet may or may not open.
+                constexpr int kMostGrowths = 40, kMostGrowthsOfNoDisk = 6;
+                double magnification = input_[c].magnification;
+                for (int growth = 0, no_disk = 0; growth <= kMostGrowths && no_disk <= kMostGrowthsOfNoDisk; ++growth) {
+                    bool any_disk = false;
+                    for (uint32_t o = 0; o < options_.orientations; ++o) {
+                        const double angle = 2 * std::numbers::pi * o / options_.orientations;
+                        ChartMask chart = rasterize_chart(input_[c].border, scale * magnification, angle);
+                        any_disk |= chart.is_disk;
+                        if (chart.is_disk && chart.border_length >= input_[c].least_border)
+                            shapes_[c].push_back(make_piece(std::move(chart)));
+                    }
+                    if (!shapes_[c].empty()) break;
+                    no_disk += !any_disk;
+                    magnification *= 1.1;
+                }
+                broken[c] = shapes_[c].empty();
+            }
+        });
+        for (uint32_t c = 0; c < broken.size(); ++c) {
+            if (broken[c]) broken_.push_back(c);
+        }
+        return broken_.empty();
+    }
+    Packing report_broken() const {
+        Packing packing;
+        packing.broken = broken_;
+        return packing;
+    }
+
+    bool aspect_is_fine(uint32_t width, uint32_t height) const {
+        return width < options_.most_aspect * height && height < options_.most_aspect * width;
+    }
+    // Tries recipes in parallel; those of forbidden aspect are left out.
+    std::vector<Candidate> evaluate(std::vector<Recipe> recipes, double slack) {
+        std::vector<Attempt> attempts(recipes.size());
+        parallel_blocks(recipes.size(), 1, options_.threads, [&](size_t, size_t begin, size_t end) {
+            for (size_t k = begin; k < end; ++k) {
+                const auto limit = static_cast<uint32_t>(slack * options_.most_samples / recipes[k].width);
+                attempts[k] = try_recipe(shapes_, recipes[k], limit);
+            }
+        });
+        std::vector<Candidate> candidates;
+        for (size_t k = 0; k < recipes.size(); ++k) {
+            if (attempts[k].spots.empty() || !aspect_is_fine(recipes[k].width, attempts[k].height)) continue;
+            candidates.push_back({std::move(recipes[k]), attempts[k].height, attempts[k].crowding});
+        }
+        return candidates;
+    }
+
+    // A beam of the best recipes, varied over and over.
+    std::vector<Candidate> explore(const Progress& progress) {
+        std::vector<Recipe> recipes;
+        std::vector<uint32_t> order(shapes_.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+            return shapes_[a][0].chart.defined > shapes_[b][0].chart.defined;
+        });
+        constexpr int kWidths = 12;
+        for (int k = 0; k <= kWidths; ++k) {
+            const double aspect = std::pow(options_.most_aspect * 0.97, 2.0 * k / kWidths - 1);
+            for (const float weight : {1.0f, 0.5f, 0.0f}) {
+                recipes.push_back({static_cast<uint32_t>(std::sqrt(options_.most_samples * aspect)), order,
+                                   std::vector<float>(shapes_.size(), weight)});
+            }
+        }
+        constexpr size_t kBeam = 6, kBatch = 16;
+        std::vector<Candidate> best = evaluate(std::move(recipes), 1.6);
+        std::stable_sort(best.begin(), best.end());
+        if (best.size() > kBeam) best.resize(kBeam);
+        for (uint32_t round = 0; round < options_.effort && !best.empty(); ++round) {
+            if (progress) progress(Stage::kSample, static_cast<double>(round) / options_.effort);
+            recipes.clear();
+            for (size_t k = 0; k < kBatch; ++k)
+                recipes.push_back(vary(best[random(static_cast<uint32_t>(best.size()))].recipe));
+            for (Candidate& c : evaluate(std::move(recipes), best.back().area() / options_.most_samples))
+                best.push_back(std::move(c));
+            std::stable_sort(best.begin(), best.end());
+            if (best.size() > kBeam) best.resize(kBeam);
+        }
+        return best;
+    }
+
+    Recipe vary(Recipe recipe) {
+        const auto count = static_cast<uint32_t>(recipe.order.size());
+        if (random(3) == 0)
+            recipe.width =
+                static_cast<uint32_t>(std::max(1, static_cast<int>(recipe.width) + static_cast<int>(random(11)) - 5));
+        if (random(3) == 0) recipe.top_weight[random(count)] = 0.25f * static_cast<float>(random(5));
+        for (uint32_t moves = 1 + random(3); moves > 0 && count > 1; --moves) {
+            const uint32_t place = random(count), other = random(count);
+            if (random(2) == 0) {
+                std::swap(recipe.order[place], recipe.order[other]);
+            } else {
+                const uint32_t chart = recipe.order[place];
+                recipe.order.erase(recipe.order.begin() + place);
+                recipe.order.insert(recipe.order.begin() + other, chart);
+            }
+        }
+        return recipe;
+    }
+
+    // The candidates, in widths that follow the scale, with variations, until one fits the bound at this scale.
+    std::optional<Packing> fit_bound(const std::vector<Candidate>& best, double scale) {
+        for (int variation = 0; variation < 4; ++variation) {
+            std::vector<Recipe> recipes;
+            for (const Candidate& c : best) {
+                for (int k = 0; k < 3; ++k) {
+                    Recipe recipe = variation == 0 ? c.recipe : vary(c.recipe);
+                    recipe.width =
+                        static_cast<uint32_t>(std::lround(recipe.width * std::sqrt(options_.most_samples / c.area()))) +
+                        static_cast<uint32_t>(k) - 1;
+                    recipes.push_back(std::move(recipe));
+                }
+            }
+            const std::vector<Candidate> found = evaluate(recipes, 1.0);
+            if (found.empty()) continue;
+            const Candidate& c = *std::min_element(found.begin(), found.end());
+            return finish(scale, try_recipe(shapes_, c.recipe, c.height), c.recipe);
+        }
+        return std::nullopt;
+    }
+
+    Packing finish(double scale, const Attempt& attempt, const Recipe& recipe) const {
+        Packing packing;
+        packing.scale = scale;
+        packing.width = recipe.width;
+        packing.height = attempt.height;
+        for (size_t c = 0; c < attempt.spots.size(); ++c) {
+            const Spot& spot = attempt.spots[c];
+            PlacedChart placed{shapes_[c][spot.orientation].chart, spot.column, spot.row};
+            placed.chart.pose.offset += Vec2(spot.column, spot.row);
+            packing.defined += placed.chart.defined;
+            packing.charts.push_back(std::move(placed));
+        }
+        return packing;
+    }
+
+    const std::vector<PackShape>& input_;
+    const PackOptions& options_;
+    uint64_t random_;
+    std::vector<Shape> shapes_;
+    std::vector<uint32_t> broken_;
+};
+
+}  // namespace
+
+Result<Packing> pack(const std::vector<PackShape>& shapes, const PackOptions& options, const Progress& progress) {
+    if (shapes.empty()) return Error{Stage::kSample, "there are no charts to pack"};
+    return Packer(shapes, options).run(progress);
+}
+
+}  // namespace gim
