@@ -27,6 +27,7 @@
 #include "encoder/result.h"
 #include "encoder/stencil_solver.h"
 #include "encoder/surface_samples.h"
+#include "encoder/topology_summary.h"
 
 namespace gim {
 
@@ -41,6 +42,8 @@ constexpr double kUnfolded = 0.2;      // cosine that unfolding is content with
 constexpr int kUnfoldPasses = 4;       // in each round that unfolds
 constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
 constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of these rounds
+constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding has to prove itself
+constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost there: half a decibel
 constexpr int kMostFreezings = 16;     // further rounds of the guard, in which steps are not halved but given up
 
 struct Schedule {
@@ -700,6 +703,26 @@ bool no_worse(const FitQuality& after, const FitQuality& before) {
            after.folds <= before.folds;
 }
 
+double distance(const FitQuality& quality) { return std::max(quality.to_image, quality.to_reference); }
+
+// The part of the surface within a mean sample spacing of edges sharper than 60 degrees: much of it on machined parts,
+// hardly any on scans.
+double crease_share(const Reference& reference, size_t samples) {
+    const std::vector<Triangle>& triangles = reference.mesh.triangles;
+    const EdgeTable edges = build_edge_table(triangles, reference.mesh.positions.size());
+    double area = 0, sharp = 0;
+    for (uint32_t f = 0; f < triangles.size(); ++f) area += face_area(reference.mesh, f);
+    for (size_t e = 0; e < edges.size(); ++e) {
+        const auto around = edges.around(e);
+        if (around.size() != 2) continue;
+        if (reference.normals[around[0] / 3].dot(reference.normals[around[1] / 3]) > 0.5) continue;
+        sharp += (reference.mesh.positions[to(reference.mesh, around[0])] -
+                  reference.mesh.positions[from(reference.mesh, around[0])])
+                     .norm();
+    }
+    return area > 0 ? 2 * sharp / std::sqrt(area * static_cast<double>(samples)) : 0;
+}
+
 // What the first rounds do besides.
 struct Plan {
     uint32_t unfolding;  // so many rounds begin with unfolding
@@ -730,6 +753,8 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
     // An image without folds is kept so from the first round on. Where unfolding costs accuracy, the folds stay.
     std::vector<Plan> plans = {{0, 0}};
     if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
+    // Samples that are relaxed along the surface leave its creases; not all of them find back.
+    const bool creased = before.folds > 0 && crease_share(reference, start.positions.size()) > kCreased;
     Fitted result;
     result.image = start;
     FitQuality after = before;
@@ -739,12 +764,15 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
         result.rounds += schedule.rounds;
         const FitQuality reached = fitter.quality();
         if (!no_worse(reached, before)) continue;
-        result.improved = true;
+        if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
+            break;  // the unfolded one is better
         after = reached;
         for (size_t v = 0; v < start.positions.size(); ++v) {
             if (!fitter.held()[v]) result.image.positions[v] = frame.out_of(fitter.positions()[v]);
         }
-        break;
+        const bool compare_with_next = creased && k == 0 && !result.improved;
+        result.improved = true;
+        if (!compare_with_next) break;
     }
     const auto in_input_unit = [&](FitQuality quality) {
         quality.to_image /= frame.scale;

@@ -16,9 +16,11 @@
 #if GIM_COUNTS_MALLOC
 static std::atomic<uint64_t> allocations{0};
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): the C library's own names
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 void* malloc(size_t size) {
     ++allocations;
     return __libc_malloc(size);

@@ -223,7 +223,7 @@ TEST(Encode, BrokenMeshesAreRefusedWithWords) {
     nan.positions[7][1] = std::numeric_limits<double>::quiet_NaN();
     const auto refused = encode(nan, small_options());
     ASSERT_FALSE(refused.ok());
-    EXPECT_NE(refused.error().message.find("7"), std::string::npos) << "names the vertex";
+    EXPECT_NE(refused.error().message.find('7'), std::string::npos) << "names the vertex";
 }
 
 TEST(Encode, WrongOptionsAreRefused) {
