@@ -57,7 +57,7 @@ struct EncodeArguments {
 void add_encode(CLI::App& app, EncodeArguments& a) {
     CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
     sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension.  It must be an\n"
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension. It must be an\n"
         "orientable surface without non-manifold edges; duplicates are welded and degenerate faces removed first.\n"
         "Each connected component becomes an image of its own in the file.\n"
         "A headerless geometry image (planar float32 x, y, z; side from the size) named *.gim is imported as it is.\n"
@@ -161,10 +161,10 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
     sub->footer(
         "The extension chooses the format. ply, obj, off share the vertices on the cut; glb repeats them with equal\n"
         "positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z and "
-        "mask.\n\n"
-        "  gim decode bunny.gim bunny.ply\n"
+        "mask.\n"
         "Colours become vertex colours (ply, obj) or a base-colour texture (glb), a normal map the glb's normal "
         "texture.\n\n"
+        "  gim decode bunny.gim bunny.ply\n"
         "  gim decode bunny.gim bunny-129.glb --level 1\n"
         "  gim decode bunny.gim bunny.obj --normal-map normals.png --color-map colors.png");
     sub->add_option("IN", c.input, ".gim file to read")->required();
