@@ -33,15 +33,16 @@ Result<bool> flatten(const std::vector<double>& importance, const AtlasOptions& 
     return !changed.empty();
 }
 
-}  // namespace
+// The faces of the surface where chart c's border would run into itself. In: its map has a crossing.
+std::array<uint32_t, 2> crossing_faces(const Atlas& atlas, uint32_t c) {
+    const std::array<uint32_t, 2>& faces = *atlas.maps[c].crossing;
+    return {atlas.charts[c].source_face[faces[0]], atlas.charts[c].source_face[faces[1]]};
+}
 
-Result<Atlas> build_atlas(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
-                          const AtlasOptions& options, const Progress& progress) {
-    if (progress) progress(Stage::kCut, 0);
-    Atlas atlas;
-    atlas.partition = chartify(mesh, topology, options.chartify);
-    straighten_charts(mesh, topology, options.straighten, atlas.partition);
-    std::vector<Chart> old_charts;
+// Takes the charts of the partition apart, flattens them and splits those that do not flatten, until all do.
+Result<Atlas> settle(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
+                     const AtlasOptions& options, const Progress& progress, Atlas atlas) {
+    std::vector<Chart> old_charts = std::move(atlas.charts);
     for (int round = 0;; ++round) {
         atlas.charts = take_apart(mesh, topology, atlas.partition);
         GIM_TRY(solved, flatten(importance, options, progress, std::move(old_charts), atlas));
@@ -58,15 +59,36 @@ Result<Atlas> build_atlas(const Mesh& mesh, const Topology& topology, const std:
             if (!map.overlaps && (!wasteful || round >= options.most_splits)) continue;
             // A little strain: part the two places that meet. Otherwise halve the chart.
             std::array<uint32_t, 2> ends{kNone, kNone};
-            if (map.crossing && !map.overlaps && map.strain < kSevereStrain && taken - free > free - ideal) {
-                for (size_t k = 0; k < 2; ++k) ends[k] = atlas.charts[c].source_face[(*map.crossing)[k]];
-            }
+            if (map.crossing && !map.overlaps && map.strain < kSevereStrain && taken - free > free - ideal)
+                ends = crossing_faces(atlas, c);
             split_chart(mesh, topology, c, ends, atlas.partition);
             any = true;
         }
         if (!any) return atlas;
         old_charts = std::move(atlas.charts);
     }
+}
+
+}  // namespace
+
+Result<Atlas> build_atlas(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
+                          const AtlasOptions& options, const Progress& progress) {
+    if (progress) progress(Stage::kCut, 0);
+    Atlas atlas;
+    atlas.partition = chartify(mesh, topology, options.chartify);
+    straighten_charts(mesh, topology, options.straighten, atlas.partition);
+    return settle(mesh, topology, importance, options, progress, std::move(atlas));
+}
+
+Result<Atlas> split_charts(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
+                           const AtlasOptions& options, const std::vector<uint32_t>& charts, Atlas atlas,
+                           const Progress& progress) {
+    for (const uint32_t c : charts) {
+        std::array<uint32_t, 2> ends{kNone, kNone};
+        if (atlas.maps[c].crossing) ends = crossing_faces(atlas, c);
+        split_chart(mesh, topology, c, ends, atlas.partition);
+    }
+    return settle(mesh, topology, importance, options, progress, std::move(atlas));
 }
 
 }  // namespace gim

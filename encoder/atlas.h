@@ -29,4 +29,10 @@ struct Atlas {
 Result<Atlas> build_atlas(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
                           const AtlasOptions& options, const Progress& progress = {});
 
+// Splits the given charts, whatever they cost, and flattens what comes of them; the other charts stay as they are but may
+// get other numbers of paths.
+Result<Atlas> split_charts(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
+                           const AtlasOptions& options, const std::vector<uint32_t>& charts, Atlas atlas,
+                           const Progress& progress = {});
+
 }  // namespace gim

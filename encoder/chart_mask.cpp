@@ -163,6 +163,17 @@ bool join_pieces(SampleMask& mask) {
     return any;
 }
 
+// One pass only: again and again would eat thin tips from their ends.
+void cut_spikes(SampleMask& mask) {
+    std::vector<uint32_t> spikes;
+    for (uint32_t i = 0; i < mask.defined.size(); ++i) {
+        if (is_spike(mask, i)) spikes.push_back(i);
+    }
+    for (const uint32_t i : spikes) {
+        if (is_spike(mask, i)) mask.defined[i] = 0;
+    }
+}
+
 // Cuts the mask down to its defined samples and moves the pose along.
 void crop(ChartMask& chart) {
     const SampleMask& mask = chart.mask;
@@ -218,6 +229,33 @@ void dilate_to_manifold(SampleMask& mask) {
             }
         }
     }
+}
+
+bool is_spike(const SampleMask& mask, uint32_t sample) {
+    if (!mask.defined[sample]) return false;
+    const uint32_t around = neighbourhood(mask, sample % mask.width, sample / mask.width);
+    const auto bit = [&](uint32_t k) { return (around >> (k % 8)) & 1; };
+    // Both neighbours in the only solid quad belong to further triangles, or they would be lost with the tip.
+    const auto in_other_triangle = [&](uint32_t k) {
+        const int64_t column = sample % mask.width + kNeighbour[k % 8][0],
+                      row = sample / mask.width + kNeighbour[k % 8][1];
+        int quads = 0;
+        for (const int64_t y : {row - 1, row}) {
+            for (const int64_t x : {column - 1, column})
+                quads += mask.at(x, y) + mask.at(x + 1, y) + mask.at(x, y + 1) + mask.at(x + 1, y + 1) >= 3;
+        }
+        return quads >= 2;
+    };
+    uint32_t solid = 0, only = 0, others = 0;
+    for (uint32_t q = 0; q < 4; ++q) {
+        const uint32_t count = bit(2 * q) + bit(2 * q + 1) + bit(2 * q + 2);
+        if (count >= 2) ++solid, only = q, others = count;
+    }
+    if (solid != 1 || others != 2) return false;
+    for (uint32_t k = 2 * only; k <= 2 * only + 2; ++k) {
+        if (bit(k) && !in_other_triangle(k)) return false;
+    }
+    return true;
 }
 
 std::vector<std::vector<uint32_t>> trace_borders(const SampleMask& mask) {
@@ -314,6 +352,7 @@ ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double 
         again = join_pieces(chart.mask);
         dilate_to_manifold(chart.mask);
     }
+    cut_spikes(chart.mask);
     crop(chart);
     chart.is_disk = mask_is_disk(chart.mask);
     chart.defined = static_cast<uint32_t>(chart.mask.count());

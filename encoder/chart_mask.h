@@ -5,8 +5,8 @@
 // A sample is defined when it lies inside the chart's border or within half a sample of it. Three or four defined
 // samples of a 2 x 2 quad make triangles (section 3 of the paper). Dilation defines further samples until the triangles
 // around every defined sample form exactly one fan. We differ from the paper in that the result is certified: a mask says
-// whether it is a disk, so that the caller can choose another orientation or scale where it is not; and in that holes of
-// a few samples are filled.
+// whether it is a disk, so that the caller can choose another orientation or scale where it is not; in that holes of a few
+// samples are filled; and in that single triangles that stick out are cut off, as they make it hard to close the seams.
 #pragma once
 
 #include <array>
@@ -59,6 +59,9 @@ bool mask_is_disk(const SampleMask& mask);
 // Adds samples until the triangles around every defined sample form one fan. Never touches the outermost ring of the
 // rectangle unless it has to; a margin of two samples is enough in practice.
 void dilate_to_manifold(SampleMask& mask);
+
+// Whether a sample is the tip of a single triangle, its quad having three samples. A mask that is a disk stays one without it.
+bool is_spike(const SampleMask& mask, uint32_t sample);
 
 // Border loops of the mask's triangles: samples (row * width + column) in order, triangles on the left where columns run
 // along x and rows along y. A loop begins with its first sample in row-major order; loops come in the order of their

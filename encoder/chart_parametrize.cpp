@@ -10,6 +10,7 @@
 #include "encoder/parallel.h"
 #include "encoder/result.h"
 #include "encoder/stretch.h"
+#include "encoder/tutte.h"
 
 namespace gim {
 
@@ -164,34 +165,12 @@ bool tutte(const Chart& chart, double total_area, std::vector<Vec2>& uv) {
         uv[chart.loop[i]] = radius * Vec2(std::cos(2 * std::numbers::pi * part), std::sin(2 * std::numbers::pi * part));
         fixed[chart.loop[i]] = 1;
     }
-    std::vector<uint32_t> number(uv.size(), kNone), interior;
-    for (uint32_t v = 0; v < uv.size(); ++v) {
-        if (!fixed[v]) number[v] = static_cast<uint32_t>(interior.size()), interior.push_back(v);
-    }
-    if (interior.empty()) return true;
-    const auto n = static_cast<Eigen::Index>(interior.size());
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(n, 2);
-    // Interior edges are seen from both of their faces; each gives half.
-    const auto add = [&](uint32_t v, uint32_t w) {
-        if (number[v] == kNone) return;
-        entries.emplace_back(number[v], number[v], 0.5);
-        if (number[w] == kNone) {
-            right.row(number[v]) += 0.5 * uv[w].transpose();
-        } else {
-            entries.emplace_back(number[v], number[w], -0.5);
-        }
-    };
+    // The edges of an interior vertex all leave it as half-edges.
+    std::vector<std::array<uint32_t, 2>> arcs;
     for (const Triangle& t : mesh.triangles) {
-        for (size_t i = 0; i < 3; ++i) add(t[i], t[(i + 1) % 3]), add(t[(i + 1) % 3], t[i]);
+        for (size_t i = 0; i < 3; ++i) arcs.push_back({t[i], t[(i + 1) % 3]});
     }
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    if (solver.info() != Eigen::Success) return false;
-    const Eigen::MatrixX2d solution = solver.solve(right);
-    for (Eigen::Index i = 0; i < n; ++i) uv[interior[static_cast<size_t>(i)]] = solution.row(i).transpose();
-    return true;
+    return solve_tutte(arcs, fixed, uv);
 }
 
 // ---- border -------------------------------------------------------------------------------------------------------

@@ -19,11 +19,11 @@ void sample_chart(const Chart& chart, const ChartMap& map, const PlacedChart& pl
     std::vector<Vec2> uv;  // in the mask's own samples
     uv.reserve(map.uv.size());
     for (const Vec2& p : map.uv) uv.push_back(placed.chart.pose(p) - Vec2(placed.column, placed.row));
-    std::vector<double> best(mask.defined.size(), kRounding);
+    constexpr double kOutside = -1;
+    std::vector<double> best(mask.defined.size(), kOutside);  // least barycentric coordinate in the face so far
     const auto position = [&](size_t i) -> Vec3& {
         return image.positions[(placed.row + i / mask.width) * image.width() + placed.column + i % mask.width];
     };
-    std::vector<uint8_t> found(mask.defined.size(), 0);
     for (const Triangle& t : chart.mesh.triangles) {
         const Vec2 &a = uv[t[0]], &b = uv[t[1]], &c = uv[t[2]];
         const double area = twice_signed_area(a, b, c);
@@ -38,16 +38,15 @@ void sample_chart(const Chart& chart, const ChartMap& map, const PlacedChart& pl
                                               twice_signed_area(a, b, p) / area};
                 const double least = std::min({w[0], w[1], w[2]});
                 const size_t i = static_cast<size_t>(row) * mask.width + static_cast<size_t>(column);
-                if (least < best[i] || !mask.defined[i]) continue;
+                if (least < kRounding || least <= best[i] || !mask.defined[i]) continue;
                 best[i] = least;
-                found[i] = 1;
                 position(i) = w[0] * chart.mesh.positions[t[0]] + w[1] * chart.mesh.positions[t[1]] +
                               w[2] * chart.mesh.positions[t[2]];
             }
         }
     }
-    for (size_t i = 0; i < found.size(); ++i) {
-        if (found[i] || !mask.defined[i]) continue;
+    for (size_t i = 0; i < best.size(); ++i) {
+        if (best[i] > kOutside || !mask.defined[i]) continue;
         const Vec2 p(static_cast<double>(i % mask.width), static_cast<double>(i / mask.width));
         double nearest = std::numeric_limits<double>::infinity();
         for (size_t k = 0; k < chart.loop.size(); ++k) {

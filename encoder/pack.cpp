@@ -198,7 +198,7 @@ class Packer {
         if (!(area > 0)) return Error{Stage::kSample, "the charts have no area to pack"};
         // Search at one scale for the recipe with the smallest rectangle ...
         double scale = std::sqrt(0.75 * options_.most_samples / area);
-        if (!rasterize(scale)) return report_broken();
+        if (!rasterize(scale) || !all_short()) return report_broken();
         std::vector<Candidate> best = explore(progress);
         if (best.empty()) return no_room();
         // ... then enlarge the charts until it is just as large as allowed.
@@ -278,6 +278,17 @@ class Packer {
         });
         for (uint32_t c = 0; c < broken.size(); ++c) {
             if (broken[c]) broken_.push_back(c);
+        }
+        return broken_.empty();
+    }
+    // Charts too long for any good rectangle are to be split as well.
+    bool all_short() {
+        constexpr double kLongest = 1.2;  // in sides of the square of all samples
+        for (uint32_t c = 0; c < shapes_.size(); ++c) {
+            double length = std::numeric_limits<double>::infinity();
+            for (const Piece& piece : shapes_[c])
+                length = std::min<double>(length, std::max(piece.width, piece.height));
+            if (length > kLongest * std::sqrt(options_.most_samples)) broken_.push_back(c);
         }
         return broken_.empty();
     }

@@ -49,7 +49,7 @@ struct Packing {
 
 // Every placed mask is a disk with at least `least_border` border samples. A chart for which no orientation gives one is
 // enlarged on its own; when its masks are still no disks at 1.8 times its size it is reported in `broken`: it has an
-// inlet narrower than a sample. Fails when the bound is too small for the charts.
+// inlet narrower than a sample. So is one that is much longer than the side of a square of the samples. Fails when the bound is too small for the charts.
 // Cost: a few seconds for 50 charts and 65,536 samples. Deterministic.
 Result<Packing> pack(const std::vector<PackShape>& shapes, const PackOptions& options, const Progress& progress = {});
 

@@ -9,6 +9,7 @@
 #include "encoder/progressive_mesh.h"
 #include "encoder/result.h"
 #include "encoder/stretch.h"
+#include "encoder/tutte.h"
 
 namespace gim {
 
@@ -18,39 +19,15 @@ constexpr uint32_t kBaseInterior = 60;  // interior vertices of the base mesh, w
 constexpr int kBaseSweeps = 200;        // the base mesh is solved to convergence
 constexpr double kLeastArea = 1e-3;     // smallest weight of a face, in mean face areas
 
-// Tutte's barycentric map of the current mesh, uniform weights: injective for a convex border without chords along a
-// side. Tutte. How to Draw a Graph. 1963.
 bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
-    std::vector<uint32_t> number(uv.size(), kNone);
-    std::vector<uint32_t> interior;
+    std::vector<uint8_t> fixed(uv.size(), 1);
+    std::vector<std::array<uint32_t, 2>> arcs;
     for (uint32_t v = 0; v < uv.size(); ++v) {
         if (mesh.removed(v) || mesh.on_boundary(v)) continue;
-        number[v] = static_cast<uint32_t>(interior.size());
-        interior.push_back(v);
+        fixed[v] = 0;
+        mesh.for_each_neighbour(v, [&](uint32_t w) { arcs.push_back({v, w}); });
     }
-    if (interior.empty()) return true;
-    const auto n = static_cast<Eigen::Index>(interior.size());
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(n, 2);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        double degree = 0;
-        mesh.for_each_neighbour(interior[static_cast<size_t>(i)], [&](uint32_t w) {
-            ++degree;
-            if (number[w] == kNone) {
-                right.row(i) += uv[w].transpose();
-            } else {
-                entries.emplace_back(i, number[w], -1.0);
-            }
-        });
-        entries.emplace_back(i, i, degree);
-    }
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    if (solver.info() != Eigen::Success) return false;
-    const Eigen::MatrixX2d solution = solver.solve(right);
-    for (Eigen::Index i = 0; i < n; ++i) uv[interior[static_cast<size_t>(i)]] = solution.row(i).transpose();
-    return true;
+    return solve_tutte(arcs, fixed, uv);
 }
 
 // The map being optimised on a mesh that is refined step by step.

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "encoder/result.h"
 #include "encoder/topology_summary.h"
@@ -207,14 +209,24 @@ class Zipper {
         : image_(std::move(image)), charts_(charts), maps_(maps), packing_(packing) {}
 
     Result<MultiChartImage> run() {
-        if (auto error = find_loops()) return *error;
-        for (uint32_t c = 0; c < charts_.size(); ++c) {
-            if (auto error = cut_loop(c)) return *error;
+        owner_ = owners();
+        constexpr int kMostRounds = 10;
+        for (int round = 0;; ++round) {
+            if (auto error = find_loops()) return *error;
+            node_at_.assign(charts_.size(), {});
+            for (uint32_t c = 0; c < charts_.size(); ++c) {
+                if (auto error = cut_loop(c)) return *error;
+            }
+            number_paths();
+            close_all();
+            GIM_TRY(spikes, repair());
+            if (spikes.empty()) return std::move(image_);
+            if (round == kMostRounds) return give_up(spikes.size());
+            for (const uint32_t i : spikes) {
+                image_.mask.defined[i] = 0;
+                image_.positions[i] = Vec3::Zero();
+            }
         }
-        number_paths();
-        close_all();
-        if (auto error = repair()) return *error;
-        return std::move(image_);
     }
 
   private:
@@ -224,26 +236,33 @@ class Zipper {
         }
     }
 
+    // The chart that each sample belongs to.
+    std::vector<uint32_t> owners() const {
+        std::vector<uint32_t> owner(image_.mask.defined.size(), kNone);
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            const PlacedChart& placed = packing_.charts[c];
+            const SampleMask& mask = placed.chart.mask;
+            for (uint32_t i = 0; i < mask.defined.size(); ++i) {
+                if (!mask.defined[i]) continue;
+                owner[(placed.row + i / mask.width) * image_.width() + placed.column + i % mask.width] = c;
+            }
+        }
+        return owner;
+    }
+
     // Loops come in the order of their first samples; tells which chart each belongs to.
     std::optional<Error> find_loops() {
         loops_ = trace_borders(image_.mask);
-        chart_of_loop_.assign(loops_.size(), kNone);
+        chart_of_loop_.clear();
         loop_of_chart_.assign(charts_.size(), kNone);
-        for (uint32_t c = 0; c < charts_.size(); ++c) {
-            // The first border sample of a chart's mask is the first sample of its loop in the image too.
-            const PlacedChart& placed = packing_.charts[c];
-            uint32_t column = 0;
-            while (!placed.chart.mask.at(column, 0)) ++column;
-            const uint32_t first = placed.row * image_.width() + placed.column + column;
-            const auto found =
-                std::find_if(loops_.begin(), loops_.end(), [&](const auto& loop) { return loop[0] == first; });
-            if (found == loops_.end())
-                return Error{Stage::kSample, "chart " + std::to_string(c) + " lost its border when packed"};
-            loop_of_chart_[c] = static_cast<uint32_t>(found - loops_.begin());
-            chart_of_loop_[loop_of_chart_[c]] = c;
+        for (uint32_t l = 0; l < loops_.size(); ++l) {
+            const uint32_t c = owner_[loops_[l][0]];
+            if (loop_of_chart_[c] != kNone)
+                return Error{Stage::kSample, "chart " + std::to_string(c) + " is no disk as it was packed"};
+            loop_of_chart_[c] = l;
+            chart_of_loop_.push_back(c);
         }
-        if (std::count(chart_of_loop_.begin(), chart_of_loop_.end(), kNone) > 0)
-            return Error{Stage::kSample, "packed charts touch each other"};
+        if (loops_.size() != charts_.size()) return Error{Stage::kSample, "packed charts touch each other"};
         return std::nullopt;
     }
 
@@ -264,7 +283,6 @@ class Zipper {
             return Error{Stage::kSample, "chart " + std::to_string(c) + " has " + std::to_string(nodes.size()) +
                                              " corners on a border of " + std::to_string(loop.size()) +
                                              " samples; ask for more samples or fewer charts"};
-        node_at_.resize(charts_.size());
         node_at_[c] = std::move(at);
         return std::nullopt;
     }
@@ -281,6 +299,7 @@ class Zipper {
     }
 
     void number_paths() {
+        image_.seams = {};
         first_path_.assign(charts_.size(), 0);
         uint32_t count = 0;
         for (const uint32_t c : chart_of_loop_) {
@@ -440,14 +459,43 @@ class Zipper {
         return false;
     }
 
-    // True when nothing (more) is wrong.
-    std::optional<Error> repair() {
+    // Samples that are the tips of single triangles over a doubled edge: without them it is a border edge on that side.
+    std::vector<uint32_t> spikes_at(const TopologyAnalysis& analysis, const Reconstruction& surface,
+                                    const std::vector<uint32_t>& point) const {
+        std::set<std::pair<uint32_t, uint32_t>> doubled;
+        for (const uint32_t e : analysis.nonmanifold_edges) {
+            const uint32_t h = analysis.edges.around(e)[0];
+            doubled.insert(std::minmax(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)]));
+        }
+        std::vector<uint32_t> spikes;
+        std::vector<uint8_t> cut(charts_.size(), 0);
+        for (const std::vector<uint32_t>& loop : loops_) {
+            for (size_t k = 0; k < loop.size(); ++k) {
+                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
+                if (!is_spike(image_.mask, loop[k]) || cut[owner_[loop[k]]]) continue;
+                if (doubled.count(std::minmax(point[before], point[after])) == 0) continue;
+                spikes.push_back(loop[k]);
+                cut[owner_[loop[k]]] = 1;  // one at a time: two that touch must not both go
+            }
+        }
+        return spikes;
+    }
+
+    static Error give_up(size_t edges) {
+        return {Stage::kSample, "the surface comes together at " + std::to_string(edges) +
+                                    " edges along the seams; the charts are too small for this resolution: ask for "
+                                    "more samples or fewer charts"};
+    }
+
+    // Makes the glued surface a manifold by merging points along the seams. Where that does not do: the samples without
+    // which it should.
+    Result<std::vector<uint32_t>> repair() {
         constexpr int kMostRounds = 12;
         for (int round = 0;; ++round) {
             GIM_TRY(point, glue_samples(image_.mask, image_.seams));
             GIM_TRY(surface, reconstruct(image_));
             const TopologyAnalysis analysis = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size());
-            if (analysis.summary.manifold) return std::nullopt;
+            if (analysis.summary.manifold) return std::vector<uint32_t>{};
             std::vector<std::vector<uint8_t>> drop;
             for (const auto& steps : image_.seams.zippers) drop.emplace_back(steps.size(), uint8_t{0});
             bool any = false;
@@ -456,10 +504,10 @@ class Zipper {
                 any |= flatten(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)], point, drop);
             }
             if (!any || round == kMostRounds) {
-                return Error{Stage::kSample, std::to_string(analysis.nonmanifold_edges.size()) + " edges and " +
-                                                 std::to_string(analysis.nonmanifold_vertices.size()) +
-                                                 " vertices along the seams are not manifold; the charts are too small "
-                                                 "for this resolution: ask for more samples or fewer charts"};
+                std::vector<uint32_t> spikes = spikes_at(analysis, surface, point);
+                if (spikes.empty())
+                    return give_up(analysis.nonmanifold_edges.size() + analysis.nonmanifold_vertices.size());
+                return spikes;
             }
             for (size_t z = 0; z < drop.size(); ++z) {
                 std::vector<ZipStep> steps;
@@ -481,7 +529,7 @@ class Zipper {
     const std::vector<ChartMap>& maps_;
     const Packing& packing_;
     std::vector<std::vector<uint32_t>> loops_, node_at_;
-    std::vector<uint32_t> chart_of_loop_, loop_of_chart_, first_path_, zipper_of_path_;
+    std::vector<uint32_t> owner_, chart_of_loop_, loop_of_chart_, first_path_, zipper_of_path_;
 };
 
 }  // namespace

@@ -1,0 +1,93 @@
+#include "encoder/multi_chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "encoder/atlas.h"
+#include "encoder/chart_sample.h"
+#include "encoder/pack.h"
+#include "encoder/refine.h"
+#include "encoder/result.h"
+#include "encoder/topology_summary.h"
+#include "encoder/zipper.h"
+
+namespace gim {
+
+namespace {
+
+// Edges longer than this part of the root of the surface's area are split, so that charts have faces to choose from.
+constexpr double kLongestEdge = 0.045;
+
+std::vector<PackShape> shapes_of(const Atlas& atlas) {
+    std::vector<PackShape> shapes;
+    for (size_t c = 0; c < atlas.charts.size(); ++c) {
+        PackShape shape;
+        for (const uint32_t v : atlas.charts[c].loop) shape.border.push_back(atlas.maps[c].uv[v]);
+        // Room for a sample between any two cut-nodes.
+        shape.least_border = std::max<uint32_t>(4, static_cast<uint32_t>(2 * atlas.charts[c].paths.size()));
+        shapes.push_back(std::move(shape));
+    }
+    return shapes;
+}
+
+bool same_topology(const TopologySummary& a, const TopologySummary& b) {
+    return a.manifold && b.manifold && a.components == b.components && a.boundary_loops == b.boundary_loops &&
+           a.genus == b.genus;
+}
+
+}  // namespace
+
+Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
+    clock.begin(Stage::kCut);
+    const Mesh fine = refine_long_edges(mesh, kLongestEdge * std::sqrt(surface_area(mesh)));
+    const Topology topology = build_topology(fine);
+    const TopologySummary wanted = analyse_topology(fine.triangles, fine.positions.size()).summary;
+    AtlasOptions atlas_options;
+    atlas_options.chartify.charts = options.charts;
+    atlas_options.chartify.seed = options.seed;
+    atlas_options.parametrize.threads = options.threads;
+    GIM_TRY(atlas, build_atlas(fine, topology, {}, atlas_options, clock.progress()));
+
+    PackOptions pack_options;
+    pack_options.most_samples = options.samples;
+    pack_options.effort = options.pack_effort;
+    pack_options.seed = options.seed;
+    pack_options.threads = options.threads;
+    constexpr uint32_t kMostPackings = 12;
+    MultiChart result;
+    for (;; ++result.packings) {
+        clock.begin(Stage::kSample);
+        GIM_TRY(packing, pack(shapes_of(atlas), pack_options, clock.progress()));
+        if (!packing.broken.empty()) {
+            if (result.packings == kMostPackings)
+                return Error{Stage::kSample, "charts have inlets narrower than a sample; ask for more samples"};
+            clock.begin(Stage::kParametrize);
+            GIM_TRY(split, split_charts(fine, topology, {}, atlas_options, packing.broken, std::move(atlas),
+                                        clock.progress()));
+            atlas = std::move(split);
+            continue;
+        }
+        auto zipped =
+            zip(sample_charts(atlas.charts, atlas.maps, packing, options.threads), atlas.charts, atlas.maps, packing);
+        if (!zipped.ok()) {
+            // Samples fall elsewhere in another packing.
+            if (result.packings == kMostPackings) return zipped.error();
+            ++pack_options.seed;
+            continue;
+        }
+        result.image = std::move(zipped.value());
+        result.charts = static_cast<uint32_t>(atlas.charts.size());
+        result.stretch_efficiency = stretch_efficiency(atlas.charts, atlas.maps);
+        result.packing_efficiency =
+            static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
+        break;
+    }
+    GIM_TRY(surface, reconstruct(result.image));
+    const TopologySummary found = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size()).summary;
+    if (!same_topology(wanted, found))
+        return Error{Stage::kSample, "the image's surface has another topology than the mesh; ask for more samples"};
+    return result;
+}
+
+}  // namespace gim

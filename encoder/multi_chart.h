@@ -1,0 +1,33 @@
+// The stages of the multi-chart layout: from a clean mesh to a zippered image.
+// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.
+#pragma once
+
+#include <cstdint>
+
+#include "encoder/mesh.h"
+#include "encoder/multi_chart_image.h"
+#include "encoder/stage_clock.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct MultiChartOptions {
+    uint32_t charts = 25;       // asked for; more come out where topology or flattening needs them
+    uint32_t samples = 66049;   // bound on width * height
+    uint32_t pack_effort = 30;  // more rounds of search pack more tightly; time grows with them
+    uint64_t seed = 1;
+    uint32_t threads = 0;  // 0: all cores; the result does not depend on it
+};
+
+struct MultiChart {
+    MultiChartImage image;
+    uint32_t charts = 0;
+    double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1
+    uint32_t packings = 1;                                  // how many it took to get one whose seams close
+};
+
+// In:  a clean mesh, of any number of components and boundaries. Out: an image whose reconstruction is a manifold with
+//      the components, boundary loops and genus of the mesh. Fails, and says so, where `samples` are too few for that.
+Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock);
+
+}  // namespace gim
