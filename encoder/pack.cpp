@@ -197,10 +197,15 @@ class Packer {
             area += polygon_area(shape.border) * shape.magnification * shape.magnification;
         if (!(area > 0)) return Error{Stage::kSample, "the charts have no area to pack"};
         // Search at one scale for the recipe with the smallest rectangle ...
-        double scale = std::sqrt(0.75 * options_.most_samples / area);
-        if (!rasterize(scale) || !all_short()) return report_broken();
-        std::vector<Candidate> best = explore(progress);
-        if (best.empty()) return no_room();
+        constexpr double kSmaller = 0.85;
+        double scale = std::sqrt(0.75 * options_.most_samples / area) / kSmaller;
+        std::vector<Candidate> best;
+        for (int trial = 0; best.empty(); ++trial) {
+            if (trial == 8) return no_room();
+            scale *= kSmaller;
+            if (!rasterize(scale) || !all_short()) return report_broken();
+            best = explore(progress);
+        }
         // ... then enlarge the charts until it is just as large as allowed.
         double low = 0, high = std::numeric_limits<double>::infinity();
         std::optional<Packing> packed;
