@@ -42,8 +42,8 @@ constexpr double kUnfolded = 0.2;      // cosine that unfolding is content with
 constexpr int kUnfoldPasses = 4;       // in each round that unfolds
 constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
 constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of these rounds
-constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding has to prove itself
-constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost there: half a decibel
+constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding may do harm
+constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost: half a decibel
 constexpr int kMostFreezings = 16;     // further rounds of the guard, in which steps are not halved but given up
 
 struct Schedule {
@@ -753,8 +753,10 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
     // An image without folds is kept so from the first round on. Where unfolding costs accuracy, the folds stay.
     std::vector<Plan> plans = {{0, 0}};
     if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
-    // Samples that are relaxed along the surface leave its creases; not all of them find back.
-    const bool creased = before.folds > 0 && crease_share(reference, start.positions.size()) > kCreased;
+    // Samples that are relaxed along the surface leave its creases, and not all of them find back. Where that may matter,
+    // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
+    const bool compare = before.folds > 0 && (options.strength == FitOptions::Strength::kLoose ||
+                                              crease_share(reference, start.positions.size()) > kCreased);
     Fitted result;
     result.image = start;
     FitQuality after = before;
@@ -770,7 +772,7 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
         for (size_t v = 0; v < start.positions.size(); ++v) {
             if (!fitter.held()[v]) result.image.positions[v] = frame.out_of(fitter.positions()[v]);
         }
-        const bool compare_with_next = creased && k == 0 && !result.improved;
+        const bool compare_with_next = compare && k == 0 && !result.improved;
         result.improved = true;
         if (!compare_with_next) break;
     }

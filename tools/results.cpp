@@ -112,17 +112,29 @@ std::vector<std::string> old_rows(const std::string& path, const std::string& mo
     return rows;
 }
 
-int run(const std::string& path, const std::string& models, const std::vector<std::string>& only, uint32_t side) {
+bool is_wanted(const std::vector<std::string>& only, const std::string& name) {
+    return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+}
+
+struct Wanted {
+    std::vector<std::string> models, settings;  // empty: all
+};
+
+int run(const std::string& path, const std::string& models, const Wanted& wanted, uint32_t side) {
     std::string text = std::string(kHeader) + "\n";
     const auto add_model = [&](const std::string& name, const std::optional<TriangleMesh>& mesh) {
-        const bool is_wanted = only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-        if (!mesh || !is_wanted) {
+        const bool is_model_wanted = is_wanted(wanted.models, name);
+        if (!mesh || !is_model_wanted) {
             std::fprintf(stderr, "%-20s %s\n", name.c_str(),
-                         is_wanted ? "not here, its old rows stay" : "left as it is");
+                         is_model_wanted ? "not here, its old rows stay" : "left as it is");
             for (const std::string& line : old_rows(path, name)) text += line + "\n";
             return;
         }
         for (const Setting& setting : kSettings) {
+            if (!is_wanted(wanted.settings, setting.name)) {
+                for (const std::string& line : old_rows(path, name + "," + setting.name)) text += line + "\n";
+                continue;
+            }
             const std::string line = row(name, setting, *mesh, side);
             std::fprintf(stderr, "%s\n", line.c_str());
             text += line + "\n";
@@ -145,14 +157,15 @@ int run(const std::string& path, const std::string& models, const std::vector<st
 int main(int argc, char** argv) {
     std::string path;
     std::string models = GIM_MODELS_DIR;
-    std::vector<std::string> only;
+    gim::Wanted wanted;
     uint32_t side = 257;
     CLI::App app("gim_results: encodes the corpus and writes the record of bytes, error and time.");
     app.footer("decode_ms and encode_s depend on the machine; everything else must not.");
     app.add_option("CSV", path, "File to write, usually corpus/results.csv")->required();
     app.add_option("--models", models, "Folder of the development models (PLY)")->capture_default_str();
-    app.add_option("--only", only, "Measure these models, keep the other rows");
+    app.add_option("--only", wanted.models, "Measure these models, keep the other rows");
+    app.add_option("--settings", wanted.settings, "Measure quality-75, psnr-70 or lossless-16, keep the other rows");
     app.add_option("--size", side, "Samples per side")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    return gim::run(path, models, only, side);
+    return gim::run(path, models, wanted, side);
 }
