@@ -258,6 +258,29 @@ bool is_spike(const SampleMask& mask, uint32_t sample) {
     return true;
 }
 
+bool can_remove(const SampleMask& mask, uint32_t sample) {
+    const int64_t column = sample % mask.width, row = sample / mask.width;
+    constexpr uint32_t kInterior = 0xff;
+    if (!mask.defined[sample] || neighbourhood(mask, column, row) == kInterior) return false;
+    // An edge across an undefined corner goes with the sample, and what it joined comes apart.
+    for (uint32_t k = 0; k < 8; k += 2) {
+        const auto there = [&](uint32_t n) {
+            return mask.at(column + kNeighbour[n % 8][0], row + kNeighbour[n % 8][1]);
+        };
+        if (there(k) && there(k + 2) && !there(k + 1)) return false;
+    }
+    uint32_t neighbours = 0;
+    for (uint32_t k = 0; k < 8; ++k) {
+        const int64_t c = column + kNeighbour[k][0], r = row + kNeighbour[k][1];
+        if (!mask.at(c, r)) continue;
+        ++neighbours;
+        // Seen from the neighbour, the sample lies the other way.
+        const uint32_t without = neighbourhood(mask, c, r) & ~(1u << ((k + 4) % 8));
+        if (!is_sound(without)) return false;
+    }
+    return neighbours > 0;
+}
+
 std::vector<std::vector<uint32_t>> trace_borders(const SampleMask& mask) {
     // Every border sample has one border edge out and one in. Walk a quad's triangles counter-clockwise (x along
     // columns, y along rows): an edge whose reverse belongs to no other triangle is on the border.

@@ -63,6 +63,9 @@ void dilate_to_manifold(SampleMask& mask);
 // Whether a sample is the tip of a single triangle, its quad having three samples. A mask that is a disk stays one without it.
 bool is_spike(const SampleMask& mask, uint32_t sample);
 
+// Whether a disk stays a disk without this border sample.
+bool can_remove(const SampleMask& mask, uint32_t sample);
+
 // Border loops of the mask's triangles: samples (row * width + column) in order, triangles on the left where columns run
 // along x and rows along y. A loop begins with its first sample in row-major order; loops come in the order of their
 // first samples. In: a mask whose samples each have one fan.

@@ -478,6 +478,24 @@ class Zipper {
                 cut[owner_[loop[k]]] = 1;  // one at a time: two that touch must not both go
             }
         }
+        if (!spikes.empty()) return spikes;
+        // Otherwise an end of the edge, where it runs across a chart.
+        for (const std::vector<uint32_t>& loop : loops_) {
+            for (size_t k = 0; k < loop.size(); ++k) {
+                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
+                if (cut[owner_[loop[k]]] || !can_remove(image_.mask, loop[k])) continue;
+                for (const uint32_t other : loop) {
+                    const auto apart = [&](uint32_t x, uint32_t y) { return std::max(x, y) - std::min(x, y); };
+                    if (other == before || other == after || other == loop[k]) continue;
+                    if (apart(other % image_.width(), loop[k] % image_.width()) > 1) continue;
+                    if (apart(other / image_.width(), loop[k] / image_.width()) > 1) continue;
+                    if (doubled.count(std::minmax(point[other], point[loop[k]])) == 0) continue;
+                    spikes.push_back(loop[k]);
+                    cut[owner_[loop[k]]] = 1;
+                    break;
+                }
+            }
+        }
         return spikes;
     }
 

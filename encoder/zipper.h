@@ -19,8 +19,9 @@ namespace gim {
 
 // In:  the image as sampled, and what it was sampled from. Every chart's mask is a disk with at least two border samples
 //      per path.
-// Out: the same mask, with border samples moved onto the cut-paths and the seams filled in: samples that are one surface
-//      point are at bit-equal positions.
+// Out: the same image with border samples moved onto the cut-paths and the seams filled in: samples that are one surface
+//      point are at bit-equal positions. A few border samples are taken out of the mask where the surface would come
+//      together along an edge otherwise. Fails where that does not do: another packing may.
 // Cost: O(sum over seams of the product of the lengths of both sides).
 Result<MultiChartImage> zip(MultiChartImage image, const std::vector<Chart>& charts, const std::vector<ChartMap>& maps,
                             const Packing& packing);

@@ -102,6 +102,24 @@ TEST(ChartMask, EverySampleInsideOrNearTheBorderIsDefined) {
     EXPECT_NEAR((chart.pose({10, 10}) - Vec2(10, 10)).norm(), 0, 1e-12);
 }
 
+TEST(ChartMask, RemovableSamplesLeaveADisk) {
+    size_t removed = 0;
+    for (uint64_t seed = 0; seed < 20000; ++seed) {
+        const uint64_t bits = mix_bits(seed) | mix_bits(seed + 77777);
+        SampleMask mask{6, 6, {}};
+        for (uint32_t k = 0; k < 36; ++k) mask.defined.push_back((bits >> k) & 1);
+        if (!mask_is_disk(mask)) continue;
+        for (uint32_t k = 0; k < 36; ++k) {
+            if (!can_remove(mask, k) && !is_spike(mask, k)) continue;
+            SampleMask without = mask;
+            without.defined[k] = 0;
+            ASSERT_TRUE(mask_is_disk(without)) << seed << " " << k;
+            ++removed;
+        }
+    }
+    EXPECT_GT(removed, 100u);
+}
+
 TEST(ChartMask, NarrowInletIsReportedNotHidden) {
     // A ring with a slit far narrower than a sample: its discrete chart is an annulus, however it is turned.
     std::vector<Vec2> ring;
