@@ -47,7 +47,8 @@ void sample_chart(const Chart& chart, const ChartMap& map, const PlacedChart& pl
     }
     for (size_t i = 0; i < best.size(); ++i) {
         if (best[i] > kOutside || !mask.defined[i]) continue;
-        const Vec2 p(static_cast<double>(i % mask.width), static_cast<double>(i / mask.width));
+        const size_t row = i / mask.width, column = i % mask.width;
+        const Vec2 p(static_cast<double>(column), static_cast<double>(row));
         double nearest = std::numeric_limits<double>::infinity();
         for (size_t k = 0; k < chart.loop.size(); ++k) {
             const uint32_t v = chart.loop[k], w = chart.loop[(k + 1) % chart.loop.size()];

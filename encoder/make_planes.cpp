@@ -104,7 +104,8 @@ gim_status append_grid(const gim_info& info, std::span<const uint8_t> file, uint
     const auto first = static_cast<uint32_t>(grids->mesh.positions.size());
     for (size_t i = 0; i < positions.size(); i += 3) {
         grids->mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
-        const auto at = static_cast<double>(i / 3 % level.side), down = static_cast<double>(i / 3 / level.side);
+        const size_t row = i / 3 / level.side, column = i / 3 % level.side;
+        const auto at = static_cast<double>(column), down = static_cast<double>(row);
         grids->texcoords.push_back(Vec2(at, down) / (level.side - 1));
     }
     for (size_t i = 0; i < triangles.size(); i += 3) {

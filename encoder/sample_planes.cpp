@@ -169,7 +169,10 @@ Result<std::vector<ClosestPoint>> AttributeSource::locate(const GeometryImage& i
     GIM_TRY(gluing, glue_ring(image.sideband, image.side));
     const GridSurface surface(image, std::move(gluing));
     const double scale = double(image.side - 1) / (side - 1);
-    const auto texel = [&](size_t i) { return surface.at(double(i / side) * scale, double(i % side) * scale); };
+    const auto texel = [&](size_t i) {
+        const size_t row = i / side, column = i % side;
+        return surface.at(double(row) * scale, double(column) * scale);
+    };
     std::vector<Vec3> queries(size_t{side} * side);
     parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) queries[i] = texel(i).position;

@@ -267,7 +267,8 @@ class Zipper {
     }
 
     Vec2 place_of(uint32_t sample) const {
-        return {static_cast<double>(sample % image_.width()), static_cast<double>(sample / image_.width())};
+        const uint32_t row = sample / image_.width(), column = sample % image_.width();
+        return {static_cast<double>(column), static_cast<double>(row)};
     }
 
     std::optional<Error> cut_loop(uint32_t c) {

@@ -15,7 +15,7 @@ constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kReservedFlags = 0xF0, kL
 
 bool parse_chunk(ByteReader* reader, Chunk* chunk) {
     uint64_t tag = 0;
-    if (!reader->read_leb128(&tag) || tag >> 32 != 0 || !reader->read_leb128(&chunk->size)) return false;
+    if (!reader->read_leb128(&tag) || tag > UINT32_MAX || !reader->read_leb128(&chunk->size)) return false;
     chunk->optional = tag & 1;
     chunk->zstd = tag & 2;
     chunk->type = static_cast<ChunkType>(tag >> 2);

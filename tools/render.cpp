@@ -341,7 +341,7 @@ Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 
         const double share = plane_area(t) * space / std::max(space_area(t) * plane, 1e-300);
         const double octaves = std::clamp(std::log2(std::max(share, 1e-30)) / 5, -1.0, 1.0);
         const Vector3d end = octaves < 0 ? kSqueezed : kSpread;
-        const Vector3d colour = ((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end).array().pow(2.2);
+        Vector3d colour = ((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end).array().pow(2.2);
         const std::array<Corner, 3> corners = {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])};
         draw_triangle(
             corners, mesh.triangles.size() < 10000, [&](const auto&) { return colour; }, canvas);
