@@ -68,22 +68,21 @@ PyramidWorkspace lay_out_pyramid(uint32_t side, Arena* arena) {
     return ws;
 }
 
-FuseWork lay_out_fuse(uint32_t side, Arena* arena) {
+PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     const size_t ring = ring_length(side);
-    FuseWork work;
-    work.sums = arena->take<float>(ring * 3);
-    work.first = arena->take<uint32_t>(ring);
-    work.members = arena->take<uint32_t>(ring);
-    work.outer = arena->take<float>(ring * 3);
-    work.inner = arena->take<float>(ring * 3);
-    return work;
+    PlaneWorkspace ws;
+    ws.pyramid = lay_out_pyramid(side, arena);
+    ws.class_of = arena->take<uint32_t>(ring);
+    ws.fuse.sums = arena->take<float>(ring * 3);
+    ws.fuse.first = arena->take<uint32_t>(ring);
+    ws.fuse.members = arena->take<uint32_t>(ring);
+    ws.fuse.outer = arena->take<float>(ring * 3);
+    ws.fuse.inner = arena->take<float>(ring * 3);
+    return ws;
 }
 
 ImageWorkspace lay_out(uint32_t side, Arena* arena) {
-    ImageWorkspace ws;
-    ws.pyramid = lay_out_pyramid(side, arena);
-    ws.class_of = arena->take<uint32_t>(ring_length(side));
-    ws.fuse = lay_out_fuse(side, arena);
+    ImageWorkspace ws{lay_out_plane(side, arena)};
     ws.row_ids = arena->take<uint32_t>(size_t{side} * 2);
     // The bands are done with when normals are computed, but hold a little less.
     ws.normals = arena->take<float>(size_t{side} * side * 3);

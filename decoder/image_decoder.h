@@ -13,17 +13,21 @@
 
 namespace gim {
 
-// Everything that decoding one level needs, laid out in the caller's scratch.
-struct ImageWorkspace {
+// What decoding a plane of samples and making the two sides of its seams equal needs, laid out in the caller's scratch.
+struct PlaneWorkspace {
     PyramidWorkspace pyramid;
     uint32_t* class_of = nullptr;
     FuseWork fuse;
+};
+
+// Everything that decoding one level of an image needs.
+struct ImageWorkspace : PlaneWorkspace {
     float* normals = nullptr;
     uint32_t* row_ids = nullptr;
 };
 
 // side: of the level that is asked for.
-FuseWork lay_out_fuse(uint32_t side, Arena* arena);
+PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena);
 ImageWorkspace lay_out(uint32_t side, Arena* arena);
 
 // Decodes the samples of a level, fused, into ws.pyramid.images[0] as floats in units; fills ws.class_of.

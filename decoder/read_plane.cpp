@@ -21,21 +21,6 @@ struct PlaneLevel {
     uint64_t prefix = 0;
 };
 
-// What decoding needs.
-struct PlaneWorkspace {
-    PyramidWorkspace pyramid;
-    uint32_t* class_of = nullptr;
-    FuseWork fuse;
-};
-
-PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
-    PlaneWorkspace ws;
-    ws.pyramid = lay_out_pyramid(side, arena);
-    ws.class_of = arena->take<uint32_t>(ring_length(side));
-    ws.fuse = lay_out_fuse(side, arena);
-    return ws;
-}
-
 size_t plane_scratch_size(uint32_t side) {
     Arena arena(nullptr);
     (void)lay_out_plane(side, &arena);

@@ -15,14 +15,6 @@ Error decoding_error(gim_status status) {
     return {Stage::kCode, std::string("own output: ") + gim_status_text(status)};
 }
 
-Result<gim_info> read_info(std::span<const uint8_t> bytes) {
-    const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    gim_info info;
-    const gim_status status = gim_read_info(bytes.data(), bytes.size(), &no_limits, &info);
-    if (status != GIM_OK) return decoding_error(status);
-    return info;
-}
-
 gim_status append_image(std::span<const uint8_t> bytes, const gim_info& info, uint32_t image, uint32_t level,
                         Mesh& mesh) {
     gim_level_info size;
@@ -48,8 +40,16 @@ gim_status append_image(std::span<const uint8_t> bytes, const gim_info& info, ui
 
 }  // namespace
 
+Result<gim_info> read_own_info(std::span<const uint8_t> bytes) {
+    const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    gim_info info;
+    const gim_status status = gim_read_info(bytes.data(), bytes.size(), &no_limits, &info);
+    if (status != GIM_OK) return decoding_error(status);
+    return info;
+}
+
 Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level) {
-    GIM_TRY(info, read_info(bytes));
+    GIM_TRY(info, read_own_info(bytes));
     Mesh mesh;
     for (uint32_t image = 0; image < info.image_count; ++image) {
         const gim_status status = append_image(bytes, info, image, level, mesh);
@@ -59,7 +59,7 @@ Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level) {
 }
 
 Result<uint32_t> coarsest_level(std::span<const uint8_t> bytes) {
-    GIM_TRY(info, read_info(bytes));
+    GIM_TRY(info, read_own_info(bytes));
     uint32_t coarsest = info.level_count - 1;
     for (uint32_t image = 0; image < info.image_count; ++image) {
         gim_level_info size;

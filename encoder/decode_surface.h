@@ -5,9 +5,13 @@
 #include <span>
 
 #include "encoder/mesh.h"
+#include "gim/decoder.h"
 #include "gim/encoder.h"
 
 namespace gim {
+
+// Header and index of a file of ours, of any size. Fails with the decoder's status text.
+Result<gim_info> read_own_info(std::span<const uint8_t> bytes);
 
 // All images of the file at one level, side by side in one mesh. Images whose seams cannot be closed at that level are decoded
 // at their coarsest one. Fails with the decoder's status text.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -51,12 +52,13 @@ Result<std::vector<GeometryImage>> make_images(const Mesh& mesh, const EncodeOpt
                                                const Observer& observer, EncodeReport& report) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
-    double largest = 0, all = 0;
+    std::vector<double> areas;
     for (uint32_t k = 0; k < components.count; ++k) {
         parts.push_back(extract_component(mesh, components, k));
-        largest = std::max(largest, surface_area(parts.back()));
-        all += surface_area(parts.back());
+        areas.push_back(surface_area(parts.back()));
     }
+    const double largest = *std::max_element(areas.begin(), areas.end());
+    const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
     std::vector<GeometryImage> images;
     for (size_t k = 0; k < parts.size(); ++k) {
         const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
@@ -65,9 +67,8 @@ Result<std::vector<GeometryImage>> make_images(const Mesh& mesh, const EncodeOpt
             named.name = prefix + state.name;
             observer(named);
         };
-        const double area = surface_area(parts[k]);
         EncodeOptions part_options = options;
-        part_options.side = side_of_component(area, largest, options.side);
+        part_options.side = side_of_component(areas[k], largest, options.side);
         auto chart = make_roomy_image(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer());
         if (!chart.ok() && parts.size() == 1) return chart.error();
         if (!chart.ok()) {
@@ -75,7 +76,7 @@ Result<std::vector<GeometryImage>> make_images(const Mesh& mesh, const EncodeOpt
                                                   " (" + std::to_string(parts[k].triangles.size()) +
                                                   " triangles): " + chart.error().message};
         }
-        add_to_report(chart.value(), all > 0 ? area / all : 1.0 / double(parts.size()), report);
+        add_to_report(chart.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
         images.push_back(std::move(chart.value().image));
     }
     return images;

@@ -67,11 +67,8 @@ void describe_images(std::span<const GeometryImage> images, EncodeReport& report
 }
 
 // One value per level of the file; 0 for those that no image can close.
-std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, std::span<const uint8_t> bytes) {
-    gim_info info;
-    const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    if (gim_read_info(bytes.data(), bytes.size(), &no_limits, &info) != GIM_OK) return {};
-    std::vector<double> psnr(info.level_count, 0.0);
+std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count) {
+    std::vector<double> psnr(level_count, 0.0);
     for (const LevelReport& level : levels) psnr[level.level] = level.psnr;
     return psnr;
 }
@@ -153,7 +150,8 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     encoded.report.error = comparison;
     GIM_TRY(levels, measure_levels(encoded.bytes, surface, comparison, options.threads));
     encoded.report.levels = std::move(levels);
-    encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, encoded.bytes));
+    GIM_TRY(info, read_own_info(encoded.bytes));
+    encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, info.level_count));
     GIM_TRY(planes, plane_maker.measure(encoded.bytes));
     encoded.report.planes = std::move(planes);
     clock.end();

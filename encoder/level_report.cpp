@@ -38,10 +38,7 @@ Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_inf
 
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
                                                 const Comparison& full, uint32_t threads) {
-    const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    gim_info info;
-    if (const gim_status s = gim_read_info(bytes.data(), bytes.size(), &no_limits, &info); s != GIM_OK)
-        return Error{Stage::kCode, std::string("own output: ") + gim_status_text(s)};
+    GIM_TRY(info, read_own_info(bytes));
     CompareOptions options;
     options.samples = kSamples;
     options.threads = threads;

@@ -6,6 +6,7 @@
 
 #include "encoder/grid_surface.h"
 #include "encoder/parallel.h"
+#include "format/cell.h"
 
 namespace gim {
 
@@ -107,25 +108,14 @@ class GridSurface {
     };
     // 0 .. side-1 each.
     Point at(double row, double column) const {
-        const uint32_t cells = image_.side - 1;
-        const uint32_t r = std::min(static_cast<uint32_t>(row), cells - 1);
-        const uint32_t q = std::min(static_cast<uint32_t>(column), cells - 1);
-        const double y = row - r, x = column - q;
-        const uint32_t a = r * image_.side + q, b = a + 1, c = a + image_.side, d = c + 1;
-        const bool main = split_cell(image_.positions, image_.side, gluing_, r * cells + q)[0][2] == d;
-        // Weights of a, b, c, d within the triangle that holds the point.
-        std::array<double, 4> w;
-        if (main) {
-            w = x >= y ? std::array<double, 4>{1 - x, x - y, 0, y} : std::array<double, 4>{1 - y, 0, y - x, x};
-        } else {
-            w = x + y <= 1 ? std::array<double, 4>{1 - x - y, x, y, 0}
-                           : std::array<double, 4>{0, 1 - y, 1 - x, x + y - 1};
-        }
-        const std::array<uint32_t, 4> corners = {a, b, c, d};
+        const CellPoint place = locate_in_cell(image_.side, row, column);
+        const auto& [a, b, c, d] = place.corners;
+        const bool main = split_cell(image_.positions, image_.side, gluing_, place.cell)[0][2] == d;
+        const std::array<double, 4> w = place.weights(main);
         Point p{Vec3::Zero(), Vec3::Zero(), 0};
         for (size_t i = 0; i < 4; ++i) {
-            p.position += w[i] * image_.positions[corners[i]];
-            p.outside += w[i] * outside_[corners[i]];
+            p.position += w[i] * image_.positions[place.corners[i]];
+            p.outside += w[i] * outside_[place.corners[i]];
         }
         p.outside = unit_or_zero(p.outside);
         p.spacing = std::max((image_.positions[a] - image_.positions[d]).norm(),

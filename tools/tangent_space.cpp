@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "format/cell.h"
+
 namespace gim {
 namespace {
 
@@ -32,23 +34,13 @@ class Frames {
 
     // The direction in the frame at (row, column), 0 .. side-1 each.
     Vec3 local(double row, double column, const Vec3& direction) const {
-        const uint32_t side = image_.side, cells = side - 1;
-        const uint32_t r = std::min(static_cast<uint32_t>(row), cells - 1);
-        const uint32_t q = std::min(static_cast<uint32_t>(column), cells - 1);
-        const double y = row - r, x = column - q;
-        const std::array<uint32_t, 4> corners = {r * side + q, r * side + q + 1, (r + 1) * side + q,
-                                                 (r + 1) * side + q + 1};
+        const CellPoint place = locate_in_cell(image_.side, row, column);
+        const std::array<uint32_t, 4>& corners = place.corners;
         // Where the cell is split from first to last sample, both its triangles have these two.
-        const uint32_t* triangle = &image_.grid_triangles[size_t{r * cells + q} * 6];
+        const uint32_t* triangle = &image_.grid_triangles[size_t{place.cell} * 6];
         const bool main = std::find(triangle, triangle + 3, corners[0]) != triangle + 3 &&
                           std::find(triangle, triangle + 3, corners[3]) != triangle + 3;
-        std::array<double, 4> w;
-        if (main) {
-            w = x >= y ? std::array<double, 4>{1 - x, x - y, 0, y} : std::array<double, 4>{1 - y, 0, y - x, x};
-        } else {
-            w = x + y <= 1 ? std::array<double, 4>{1 - x - y, x, y, 0}
-                           : std::array<double, 4>{0, 1 - y, 1 - x, x + y - 1};
-        }
+        const std::array<double, 4> w = place.weights(main);
         Vec3 n = Vec3::Zero(), t = Vec3::Zero();
         for (size_t i = 0; i < 4; ++i) {
             n += w[i] * normal_or_any(image_.grid_normals, corners[i]);

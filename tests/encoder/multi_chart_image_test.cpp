@@ -29,12 +29,15 @@ MultiChartImage pillow() {
     return image;
 }
 
+TopologySummary topology_of(const Mesh& mesh) {
+    return analyse_topology(mesh.triangles, mesh.positions.size()).summary;
+}
+
 TEST(MultiChartImage, ZippedSquaresMakeASphere) {
     const MultiChartImage image = pillow();
     const auto surface = reconstruct(image);
     ASSERT_TRUE(surface.ok()) << surface.error().message;
-    const TopologySummary t =
-        analyse_topology(surface.value().mesh.triangles, surface.value().mesh.positions.size()).summary;
+    const TopologySummary t = topology_of(surface.value().mesh);
     EXPECT_TRUE(t.watertight);
     EXPECT_EQ(t.euler, 2);
     EXPECT_EQ(t.vertices, 10u);
@@ -56,8 +59,7 @@ TEST(MultiChartImage, UnmatedPathsStayOpen) {
     image.seams.zippers.resize(1);
     const auto surface = reconstruct(image);
     ASSERT_TRUE(surface.ok()) << surface.error().message;
-    const TopologySummary t =
-        analyse_topology(surface.value().mesh.triangles, surface.value().mesh.positions.size()).summary;
+    const TopologySummary t = topology_of(surface.value().mesh);
     EXPECT_TRUE(t.manifold);
     EXPECT_EQ(t.boundary_loops, 1u);
     EXPECT_EQ(t.euler, 1);
@@ -69,8 +71,7 @@ TEST(MultiChartImage, StepsOfOneSideFlattenTriangles) {
     image.seams.zippers[0] = {ZipStep::kFirst, ZipStep::kSecond, ZipStep::kBoth, ZipStep::kBoth, ZipStep::kBoth};
     const auto surface = reconstruct(image);
     ASSERT_TRUE(surface.ok()) << surface.error().message;
-    const TopologySummary t =
-        analyse_topology(surface.value().mesh.triangles, surface.value().mesh.positions.size()).summary;
+    const TopologySummary t = topology_of(surface.value().mesh);
     EXPECT_TRUE(t.watertight);
     EXPECT_EQ(t.euler, 2);
     EXPECT_EQ(t.vertices, 9u);
