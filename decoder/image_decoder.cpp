@@ -34,8 +34,10 @@ Status image_stream(const Header& header, std::span<const uint8_t> payload, uint
 template <class Wavelet>
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                       const ImageWorkspace& ws, float** samples) {
-    const PyramidShape shape = {header.side_exponents[image], level, header.quantizer, 1 << (header.bits - 1)};
+    const PyramidShape shape = square_shape(header.side_exponents[image], level, header.quantizer,
+                                            1 << (header.bits - 1));
     PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
+    new (ws.pyramid.models) BandModels();
     for (uint32_t l = header.level_count_of(image); l-- > level;) {
         Chunk chunk;
         uint64_t offset = 0;
@@ -43,7 +45,7 @@ Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint3
         if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
         if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
         if (Status s = image_stream(header, payload, image, l, &stream); s != Status::kOk) return s;
-        if (Status s = decoder.decode_stream(stream, l); s != Status::kOk) return s;
+        if (Status s = decode_stream(decoder, ws.pyramid, stream, l); s != Status::kOk) return s;
     }
     const size_t side = size_t{(header.side(image) - 1) >> level} + 1;
     *samples = to_units<typename Wavelet::Sample>(ws.pyramid.images[0], side * side * 3);
@@ -52,26 +54,30 @@ Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint3
 
 }  // namespace
 
-PyramidWorkspace lay_out_pyramid(uint32_t side, Arena* arena) {
-    const uint32_t half = side / 2 + 1;
-    PyramidWorkspace ws;
-    ws.models = arena->take<BandModels>(1);
-    ws.band_work.above = arena->take<int32_t>(BandWork::row_size(half));
-    ws.band_work.current = arena->take<int32_t>(BandWork::row_size(half));
-    ws.band_work.expected = arena->take<uint32_t>(BandWork::row_size(half));
-    ws.band_work.full_above = arena->take<uint8_t>(BandWork::block_size(half));
-    ws.bands[0] = arena->take<int32_t>(std::max<size_t>(band_count(side), 12));
-    ws.bands[1] = arena->take<int32_t>(std::max<size_t>(band_count(half), 12));
-    ws.images[0] = arena->take<float>(size_t{side} * side * 3);
-    ws.images[1] = arena->take<float>(size_t{half} * half * 3);
-    ws.synthesis = arena->take<float>(synthesis_work_size(side));
-    return ws;
+void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
+    const uint32_t low_columns = low_count(columns), low_rows = low_count(rows);
+    const size_t all = size_t{columns} * rows * 3, low = size_t{low_columns} * low_rows * 3;
+    // Less would do for bands, but a base is read into their place.
+    ws->bands[0] = arena->take<int32_t>(all);
+    ws->bands[1] = arena->take<int32_t>(low);
+    ws->images[0] = arena->take<float>(all);
+    ws->images[1] = arena->take<float>(low);
+}
+
+void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws) {
+    ws->models = arena->take<BandModels>(1);
+    ws->band_work.above = arena->take<int32_t>(BandWork::row_size(columns));
+    ws->band_work.current = arena->take<int32_t>(BandWork::row_size(columns));
+    ws->band_work.expected = arena->take<uint32_t>(BandWork::row_size(columns));
+    ws->band_work.full_above = arena->take<uint8_t>(BandWork::block_size(columns));
+    ws->synthesis = arena->take<float>(synthesis_work_size(columns));
 }
 
 PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     const size_t ring = ring_length(side);
     PlaneWorkspace ws;
-    ws.pyramid = lay_out_pyramid(side, arena);
+    lay_out_coder(side, arena, &ws.pyramid);
+    lay_out_planes(side, side, arena, &ws.pyramid);
     ws.class_of = arena->take<uint32_t>(ring);
     ws.fuse.sums = arena->take<float>(ring * 3);
     ws.fuse.first = arena->take<uint32_t>(ring);

@@ -26,6 +26,12 @@ struct ImageWorkspace : PlaneWorkspace {
     uint32_t* row_ids = nullptr;
 };
 
+// The pyramid of a square of side 2^exponent + 1.
+inline PyramidShape square_shape(uint32_t exponent, uint32_t level, float quantizer, int32_t middle) {
+    const uint32_t side = (1u << exponent) + 1;
+    return {side, side, exponent, level, quantizer, middle, false};
+}
+
 // side: of the level that is asked for.
 PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena);
 ImageWorkspace lay_out(uint32_t side, Arena* arena);

@@ -15,101 +15,119 @@ namespace gim {
 
 // Memory for one pyramid, laid out in the caller's scratch.
 struct PyramidWorkspace {
-    BandModels* models = nullptr;
+    BandModels* models = nullptr;  // to be made fresh before the first stream
     BandWork band_work;
     int32_t* bands[2] = {};  // of the level being decoded and of its parent, in turn
     void* images[2] = {};    // int32_t or float triples, in turn; the requested level ends in images[0]
     void* synthesis = nullptr;
 };
 
-// side: of the level that is asked for.
-PyramidWorkspace lay_out_pyramid(uint32_t side, Arena* arena);
+// columns, rows: of the level that is asked for. models and band_work are left out: charts of one image share them.
+void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws);
+// The rest; columns: of the widest level.
+void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws);
 
 struct PyramidShape {
-    uint32_t exponent = 0;  // the full side is 2^exponent + 1
-    uint32_t level = 0;     // the requested side is 2^(exponent - level) + 1
-    float quantizer = 0;    // 9/7 only
-    int32_t middle = 0;     // what base samples are stored relative to
+    uint32_t columns = 2, rows = 2;  // at full resolution
+    uint32_t steps = 0;              // from the base to full resolution
+    uint32_t level = 0;              // asked for: that many steps are left out
+    float quantizer = 0;             // 9/7 only
+    int32_t middle = 0;              // what base samples are stored relative to
+    bool chained_base = false;       // a base value is stored relative to the one before it
 };
 
 inline constexpr float kLargestUnit = 0x1p22f;  // writers stay well below; keeps all later arithmetic finite
 
-// Places the three bands of the level of side 2h+1 in one array.
-inline LevelBands bands_in(int32_t* memory, uint32_t h) {
+// Places the three bands that lead to an image in one array.
+inline LevelBands bands_in(int32_t* memory, uint32_t columns, uint32_t rows) {
     LevelBands bands;
-    bands.horizontal = {memory, h + 1, h};
-    bands.vertical = {bands.horizontal.values + bands.horizontal.count(), h, h + 1};
-    bands.diagonal = {bands.vertical.values + bands.vertical.count(), h, h};
+    bands.horizontal = {memory, low_count(rows), high_count(columns)};
+    bands.vertical = {bands.horizontal.values + bands.horizontal.count(), high_count(rows), low_count(columns)};
+    bands.diagonal = {bands.vertical.values + bands.vertical.count(), high_count(rows), high_count(columns)};
     return bands;
 }
 
-inline size_t band_count(uint32_t side) {
-    const size_t n = side, low = side / 2 + 1;
-    return (n * n - low * low) * 3;
-}
-
-// Decodes the streams from the coarsest level down to the requested one.
+// Decodes bands from the base up to the level that is asked for.
 template <class Wavelet>
 class PyramidDecoder {
   public:
     using Sample = typename Wavelet::Sample;
 
-    PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws) : shape_(shape), ws_(ws) {
-        new (ws_.models) BandModels();
-    }
+    PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws) : shape_(shape), ws_(ws) {}
 
-    // One stream, down to that level; the first one begins with the 2x2 base and has several steps.
-    Status decode_stream(std::span<const uint8_t> stream, uint32_t stream_level) {
-        RangeDecoder coder(stream);
-        BandCoder<RangeDecoder> band_coder(&coder, ws_.models, ws_.band_work);
-        const uint32_t stream_exponent = shape_.exponent - stream_level;
-        if (done_ == 0) decode_base(band_coder);
-        while (ok_ && done_ < stream_exponent) decode_step(band_coder, ++done_);
-        return ok_ && coder.intact() ? Status::kOk : Status::kMalformed;
+    // All that leads to a level (0: full resolution) from where the last call has come. False: no writer's values.
+    bool advance(BandCoder<RangeDecoder>& coder, uint32_t to_level) {
+        if (!started_ && !decode_base(coder)) return false;
+        started_ = true;
+        while (done_ < shape_.steps - to_level) {
+            if (!decode_step(coder, ++done_)) return false;
+        }
+        return true;
     }
 
   private:
-    // Images and bands alternate so that the last ones of the requested level fall on slot 0.
-    uint32_t slot(uint32_t exponent) const { return (shape_.exponent - shape_.level - exponent) & 1; }
-    Sample* image(uint32_t exponent) const { return static_cast<Sample*>(ws_.images[slot(exponent)]); }
+    // Size of the image that the first `step` steps lead to.
+    uint32_t columns_at(uint32_t step) const { return halved(shape_.columns, shape_.steps - step); }
+    uint32_t rows_at(uint32_t step) const { return halved(shape_.rows, shape_.steps - step); }
 
-    void decode_base(BandCoder<RangeDecoder>& coder) {
-        const Band base = {ws_.bands[slot(0)], 2, 2};
-        ok_ = coder.code_base(base);
+    // Images and bands alternate so that the last ones of the requested level fall on slot 0.
+    uint32_t slot(uint32_t step) const { return (shape_.steps - shape_.level - step) & 1; }
+    Sample* image(uint32_t step) const { return static_cast<Sample*>(ws_.images[slot(step)]); }
+
+    bool decode_base(BandCoder<RangeDecoder>& coder) {
+        const Band base = {ws_.bands[slot(0)], rows_at(0), columns_at(0)};
+        if (!coder.code_base(base)) return false;
+        if (shape_.chained_base) {
+            for (size_t i = 3; i < base.count(); ++i) {
+                base.values[i] = static_cast<int32_t>(static_cast<uint32_t>(base.values[i]) +
+                                                      static_cast<uint32_t>(base.values[i - 3]));
+            }
+        }
         Sample* values = image(0);
-        const float step = low_band_step(shape_.quantizer, shape_.exponent);
+        const float step = low_band_step(shape_.quantizer, shape_.steps);
         for (size_t i = 0; i < base.count(); ++i) {
             if constexpr (Wavelet::kSteps == 2) {
-                values[i] = base.values[i] + shape_.middle;
+                values[i] = static_cast<int32_t>(static_cast<uint32_t>(base.values[i]) +
+                                                 static_cast<uint32_t>(shape_.middle));
             } else {
                 values[i] = static_cast<float>(base.values[i]) * step + static_cast<float>(shape_.middle);
             }
         }
+        return true;
     }
 
-    void decode_step(BandCoder<RangeDecoder>& coder, uint32_t exponent) {
-        const uint32_t h = 1u << (exponent - 1);
-        const LevelBands bands = bands_in(ws_.bands[slot(exponent)], h);
+    bool decode_step(BandCoder<RangeDecoder>& coder, uint32_t step) {
+        const uint32_t columns = columns_at(step), rows = rows_at(step);
+        const LevelBands bands = bands_in(ws_.bands[slot(step)], columns, rows);
         LevelBands parents;
-        const bool has_parents = exponent > 1;
-        if (has_parents) parents = bands_in(ws_.bands[slot(exponent - 1)], h / 2);
-        ok_ = coder.code_level(bands, has_parents ? &parents : nullptr);
-        if (!ok_) return;
+        const bool has_parents = step > 1;
+        if (has_parents) parents = bands_in(ws_.bands[slot(step - 1)], columns_at(step - 1), rows_at(step - 1));
+        if (!coder.code_level(bands, has_parents ? &parents : nullptr)) return false;
         BandSteps steps;
         if constexpr (Wavelet::kSteps > 2) {
-            const uint32_t depth = shape_.exponent - exponent + 1;
+            const uint32_t depth = shape_.steps - step + 1;
             steps.edge = band_step(shape_.quantizer, depth, Orientation::kHorizontal);
             steps.diagonal = band_step(shape_.quantizer, depth, Orientation::kDiagonal);
         }
-        synthesize<Wavelet>(2 * h + 1, image(exponent - 1), bands, steps, static_cast<Sample*>(ws_.synthesis),
-                            image(exponent));
+        synthesize<Wavelet>(columns, rows, image(step - 1), bands, steps, static_cast<Sample*>(ws_.synthesis),
+                            image(step));
+        return true;
     }
 
     PyramidShape shape_;
     const PyramidWorkspace& ws_;
-    uint32_t done_ = 0;  // exponent of the finest side that is there
-    bool ok_ = true;
+    uint32_t done_ = 0;  // steps that are done
+    bool started_ = false;
 };
+
+// One stream of an image that has streams of its own.
+template <class Wavelet>
+Status decode_stream(PyramidDecoder<Wavelet>& decoder, const PyramidWorkspace& ws, std::span<const uint8_t> stream,
+                     uint32_t to_level) {
+    RangeDecoder coder(stream);
+    BandCoder<RangeDecoder> band_coder(&coder, ws.models, ws.band_work);
+    return decoder.advance(band_coder, to_level) && coder.intact() ? Status::kOk : Status::kMalformed;
+}
 
 // Integers or floats in place to bounded floats. By memcpy: the two types share the memory.
 template <class Sample>

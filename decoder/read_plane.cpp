@@ -58,7 +58,7 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     while (((side - 1) >> (out->coarsest + 1)) + 1 >= least) ++out->coarsest;
     if (level > out->coarsest) return Status::kNoSuchLevel;
     out->side = ((side - 1) >> level) + 1;
-    out->shape = {out->chunk.side_exponents[image], level, out->chunk.quantizer, 0};
+    out->shape = square_shape(out->chunk.side_exponents[image], level, out->chunk.quantizer, 0);
     out->prefix = offset + chunk.size;
     return Status::kOk;
 }
@@ -75,7 +75,8 @@ void finish_color(float* c) {
 
 Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace& ws, float* values) {
     PyramidDecoder<Irreversible97> decoder(plane.shape, ws.pyramid);
-    if (Status s = decoder.decode_stream(plane.chunk.stream, plane.shape.level); s != Status::kOk) return s;
+    new (ws.pyramid.models) BandModels();
+    if (Status s = decode_stream(decoder, ws.pyramid, plane.chunk.stream, plane.shape.level); s != Status::kOk) return s;
     const uint32_t side = plane.side;
     const size_t count = size_t{side} * side * 3;
     const float* samples = to_units<float>(ws.pyramid.images[0], count);

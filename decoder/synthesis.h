@@ -1,5 +1,5 @@
-// One level of the inverse wavelet: from an image of side h+1 and three bands to the image of side 2h+1.
-// Samples are interleaved triples, so every loop runs over whole rows. Cost O(side^2).
+// One level of the inverse wavelet: from an image of half the size and three bands to the image.
+// Samples are interleaved triples, so every loop runs over whole rows. Cost O(samples).
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ struct BandSteps {
 };
 
 // Numbers (of Sample's size) that synthesize needs as work space.
-constexpr size_t synthesis_work_size(uint32_t side) { return (size_t{side} + 3) * 3; }
+constexpr size_t synthesis_work_size(uint32_t columns) { return (size_t{columns} + 4) * 3; }
 
-// low: (h+1)^2 triples. image: side^2 triples, may not overlap the inputs.
+// columns, rows: of the image, 2 or more. low: low_count(rows) x low_count(columns) triples. image: rows x columns triples,
+// may not overlap the inputs.
 template <class Wavelet>
-void synthesize(uint32_t side, const typename Wavelet::Sample* low, const LevelBands& bands, const BandSteps& steps,
+void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands, const BandSteps& steps,
                 typename Wavelet::Sample* work, typename Wavelet::Sample* image);
 
 }  // namespace gim

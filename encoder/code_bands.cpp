@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "encoder/range_encoder.h"
-
 namespace gim {
 namespace {
 
@@ -70,52 +68,57 @@ std::vector<int32_t> quantize_base(const std::vector<float>& values, float step)
     return out;
 }
 
-// The integer bands that lead to side 2h+1.
-LevelBands bands_of(AnalysisLevel<int32_t>& level, uint32_t h) {
-    return {{level.horizontal.data(), h + 1, h}, {level.vertical.data(), h, h + 1}, {level.diagonal.data(), h, h}};
-}
-
 }  // namespace
 
 Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer) {
     Pyramid<int32_t> out;
-    out.side = pyramid.side;
-    const auto count = static_cast<uint32_t>(pyramid.levels.size());
-    out.base = quantize_base(pyramid.base, low_band_step(quantizer, count));
-    for (uint32_t e = 1; e <= count; ++e) {
-        const uint32_t h = 1u << (e - 1);
+    out.columns = pyramid.columns;
+    out.rows = pyramid.rows;
+    const uint32_t steps = pyramid.steps();
+    out.base = quantize_base(pyramid.base, low_band_step(quantizer, steps));
+    for (uint32_t e = 1; e <= steps; ++e) {
+        const uint32_t columns = pyramid.columns_at(e), rows = pyramid.rows_at(e);
+        const uint32_t lows = low_count(columns), highs = high_count(columns);
         const AnalysisLevel<float>& level = pyramid.levels[e - 1];
-        const float edge = band_step(quantizer, count - e + 1, Orientation::kHorizontal);
-        const float diagonal = band_step(quantizer, count - e + 1, Orientation::kDiagonal);
-        out.levels.push_back({quantize({level.horizontal, h + 1, h}, edge), quantize({level.vertical, h, h + 1}, edge),
-                              quantize({level.diagonal, h, h}, diagonal)});
+        const float edge = band_step(quantizer, steps - e + 1, Orientation::kHorizontal);
+        const float diagonal = band_step(quantizer, steps - e + 1, Orientation::kDiagonal);
+        out.levels.push_back({quantize({level.horizontal, low_count(rows), highs}, edge),
+                              quantize({level.vertical, high_count(rows), lows}, edge),
+                              quantize({level.diagonal, high_count(rows), highs}, diagonal)});
     }
     return out;
 }
 
+BandScratch::BandScratch(uint32_t columns)
+    : rows_(BandWork::row_size(columns) * 2), expected_(BandWork::row_size(columns)), flags_(BandWork::block_size(columns)) {}
+
+BandWork BandScratch::work() {
+    return {rows_.data(), rows_.data() + rows_.size() / 2, expected_.data(), flags_.data()};
+}
+
+void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level) {
+    if (from_step == 0) coder.code_base({pyramid.base.data(), pyramid.rows_at(0), pyramid.columns_at(0)});
+    for (uint32_t step = from_step; step < pyramid.steps() - to_level; ++step) {
+        const LevelBands bands = bands_of(pyramid, step);
+        if (step == 0) {
+            coder.code_level(bands, nullptr);
+        } else {
+            const LevelBands parents = bands_of(pyramid, step - 1);
+            coder.code_level(bands, &parents);
+        }
+    }
+}
+
 std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count) {
-    const auto exponent = static_cast<uint32_t>(pyramid.levels.size());
-    const uint32_t half = pyramid.side / 2 + 1;
     BandModels models;
-    std::vector<int32_t> rows(BandWork::row_size(half) * 2);
-    std::vector<uint32_t> expected(BandWork::row_size(half));
-    std::vector<uint8_t> flags(BandWork::block_size(half));
-    const BandWork work = {rows.data(), rows.data() + BandWork::row_size(half), expected.data(), flags.data()};
+    BandScratch scratch(pyramid.columns);
     std::vector<std::vector<uint8_t>> streams;
     uint32_t done = 0;
     for (uint32_t level = level_count; level-- > 0;) {
         RangeEncoder coder;
-        BandCoder<RangeEncoder> band_coder(&coder, &models, work);
-        if (done == 0) band_coder.code_base({pyramid.base.data(), 2, 2});
-        for (; done < exponent - level; ++done) {
-            const LevelBands bands = bands_of(pyramid.levels[done], 1u << done);
-            if (done == 0) {
-                band_coder.code_level(bands, nullptr);
-            } else {
-                const LevelBands parents = bands_of(pyramid.levels[done - 1], 1u << (done - 1));
-                band_coder.code_level(bands, &parents);
-            }
-        }
+        BandCoder<RangeEncoder> band_coder(&coder, &models, scratch.work());
+        code_steps(band_coder, pyramid, done, level);
+        done = pyramid.steps() - level;
         streams.push_back(coder.finish());
     }
     return streams;

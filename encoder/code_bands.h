@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "encoder/range_encoder.h"
 #include "encoder/wavelet_analysis.h"
 
 namespace gim {
@@ -12,6 +13,21 @@ namespace gim {
 // Integer bands of one image; lossless ones as they are, lossy ones divided by their band's step and rounded with a
 // dead zone. quantizer: units.
 Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer);
+
+// What BandCoder works in; columns: of the widest image.
+class BandScratch {
+  public:
+    explicit BandScratch(uint32_t columns);
+    BandWork work();
+
+  private:
+    std::vector<int32_t> rows_;
+    std::vector<uint32_t> expected_;
+    std::vector<uint8_t> flags_;
+};
+
+// The base, if from_step is 0, and the bands of the steps after `from_step` that lead to a level (0: full resolution).
+void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level);
 
 // Streams of the image's levels, coarsest first. level_count: 1 .. exponent of the side; the first stream holds the
 // base and all coarser bands.

@@ -1,9 +1,11 @@
 // Image -> wavelet bands: the mirror of decoder/synthesis.h.  spec/gim-format.md, "Wavelets".
-// In:  side*side interleaved triples, integers (reversible 5/3) or floats in units (9/7).
-// Out: all bands down to a 2x2 base. Cost O(side^2). Deterministic.
+// In:  rows*columns interleaved triples, integers (reversible 5/3) or floats in units (9/7).
+// Out: all bands down to the base. Cost O(samples). Deterministic.
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "format/band_code.h"
@@ -11,7 +13,7 @@
 
 namespace gim {
 
-// The bands that lead from side 2^(e-1)+1 to side 2^e+1, as triples.
+// The bands of one step, as triples.
 template <class Sample>
 struct AnalysisLevel {
     std::vector<Sample> horizontal, vertical, diagonal;
@@ -19,12 +21,34 @@ struct AnalysisLevel {
 
 template <class Sample>
 struct Pyramid {
-    uint32_t side = 0;
-    std::vector<Sample> base;                   // 2x2 triples
-    std::vector<AnalysisLevel<Sample>> levels;  // levels[e-1], e = 1 .. exponent of the side
+    uint32_t columns = 0, rows = 0;             // of the image
+    std::vector<Sample> base;                   // the image that remains
+    std::vector<AnalysisLevel<Sample>> levels;  // those that lead up from the base, coarsest first
+
+    uint32_t steps() const { return static_cast<uint32_t>(levels.size()); }
+    // Size of the image that the first `step` levels lead to.
+    uint32_t columns_at(uint32_t step) const { return halved(columns, steps() - step); }
+    uint32_t rows_at(uint32_t step) const { return halved(rows, steps() - step); }
 };
 
+// columns, rows: before each step 2 or more.
 template <class Wavelet>
-Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t side);
+Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t columns, uint32_t rows,
+                                          uint32_t steps);
+
+// A square of side 2^j + 1, down to 2 x 2.
+template <class Wavelet>
+Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t side) {
+    return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)));
+}
+
+// The bands of levels[index].
+inline LevelBands bands_of(Pyramid<int32_t>& pyramid, uint32_t index) {
+    const uint32_t columns = pyramid.columns_at(index + 1), rows = pyramid.rows_at(index + 1);
+    AnalysisLevel<int32_t>& level = pyramid.levels[index];
+    return {{level.horizontal.data(), low_count(rows), high_count(columns)},
+            {level.vertical.data(), high_count(rows), low_count(columns)},
+            {level.diagonal.data(), high_count(rows), high_count(columns)}};
+}
 
 }  // namespace gim

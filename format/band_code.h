@@ -27,12 +27,23 @@ struct Band {
     int32_t* row(uint32_t r) const { return values + size_t{r} * columns * 3; }
 };
 
-// The bands between an image of side h+1 and one of side 2h+1.
+// A run of n samples splits into so many low and high ones (format/lifting.h).
+constexpr uint32_t low_count(uint32_t n) { return n - n / 2; }
+constexpr uint32_t high_count(uint32_t n) { return n / 2; }
+
+// What is left of n samples after so many steps.
+constexpr uint32_t halved(uint32_t n, uint32_t steps) {
+    for (; steps > 0; --steps) n = low_count(n);
+    return n;
+}
+
+// The three bands that lead to an image.
 struct LevelBands {
-    Band horizontal;  // (h+1) x h
-    Band vertical;    // h x (h+1)
-    Band diagonal;    // h x h
+    Band horizontal;  // low_count(rows) x high_count(columns)
+    Band vertical;    // high_count(rows) x low_count(columns)
+    Band diagonal;    // high_count(rows) x high_count(columns)
 };
+
 
 // The adaptive state of one image; it goes on from level to level.
 struct BandModels {
@@ -86,7 +97,7 @@ class BandCoder {
   public:
     BandCoder(Coder* coder, BandModels* models, const BandWork& work) : coder_(*coder), models_(*models), work_(work) {}
 
-    // The 2x2 base.
+    // The coarsest image, 2 x 2 of a square.
     bool code_base(const Band& base) { return code_band(base, {}); }
 
     // parents: the bands of the next coarser level, or nullptr.
@@ -173,9 +184,10 @@ void BandCoder<Coder>::expect(const Surroundings& around, uint32_t row, uint32_t
     const int32_t first = static_cast<int32_t>(begin * 3), last = static_cast<int32_t>(end * 3);
     for (int32_t i = first; i < last; ++i)
         expected[i] = 5 * magnitude_of(above[i]) + 2 * (magnitude_of(above[i - 3]) + magnitude_of(above[i + 3]));
-    if (around.parent) {
+    if (around.parent && row / 2 < around.parent->rows) {
         const int32_t* from = around.parent->row(row / 2);
-        for (uint32_t column = begin; column < end; ++column)
+        const uint32_t parent_end = std::min(end, 2 * around.parent->columns);
+        for (uint32_t column = begin; column < parent_end; ++column)
             for (uint32_t k = 0; k < 3; ++k) expected[column * 3 + k] += magnitude_of(from[column / 2 * 3 + k]);
     }
     // A sibling has up to one row or column less, or more.
@@ -200,8 +212,11 @@ bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, ui
     int32_t* values = band.row(row);
     auto& signs = models_.sign[static_cast<size_t>(around.orientation)];
     constexpr int32_t kNoParent[3] = {0, 0, 0};
+    const bool has_parent = around.parent && row / 2 < around.parent->rows;
     for (uint32_t column = begin; column < end; ++column) {
-        const int32_t* parent = around.parent ? around.parent->row(row / 2) + column / 2 * 3 : kNoParent;
+        const int32_t* parent = has_parent && column / 2 < around.parent->columns
+                                    ? around.parent->row(row / 2) + column / 2 * 3
+                                    : kNoParent;
         uint32_t before = 0;  // magnitudes of the components before
         for (int32_t k = 0; k < 3; ++k) {
             const int32_t i = static_cast<int32_t>(column * 3) + k;

@@ -1,6 +1,6 @@
 // The two wavelets as lifting steps on rows, and the quantizer steps of their bands.  spec/gim-format.md, "Wavelets".
-// A side of 2h+1 samples splits into h+1 low (even) and h high (odd) ones. Every high sample lies between two low ones;
-// a low one at the end meets its only high neighbour twice, which is symmetric extension. After: Daubechies, Sweldens.
+// A run of n samples, at least 2, splits into its even ones (low) and its odd ones (high). High sample i lies between low
+// samples i and i+1; one at an end meets its only neighbour twice, which is symmetric extension. After: Daubechies, Sweldens.
 // Factoring Wavelet Transforms into Lifting Steps. 1998 (9/7); Calderbank, Daubechies, Sweldens, Yeo. Wavelet
 // Transforms that Map Integers to Integers. 1998 (5/3).
 #pragma once

@@ -89,7 +89,7 @@ void inverse_wavelet(benchmark::State& state) {
     std::vector<Sample> low(size_t{h + 1} * (h + 1) * 3, Sample{5}), work(synthesis_work_size(kSide)),
         out(size_t{kSide} * kSide * 3);
     for (auto _ : state) {
-        synthesize<Wavelet>(kSide, low.data(), bands, {1.0f, 1.0f}, work.data(), out.data());
+        synthesize<Wavelet>(kSide, kSide, low.data(), bands, {1.0f, 1.0f}, work.data(), out.data());
         benchmark::ClobberMemory();
     }
 }
@@ -105,19 +105,14 @@ void entropy_decoding(benchmark::State& state) {
     std::vector<uint32_t> expected(BandWork::row_size(129));
     std::vector<uint8_t> flags(BandWork::block_size(129));
     const BandWork work = {rows.data(), rows.data() + BandWork::row_size(129), expected.data(), flags.data()};
-    const auto level = [&](uint32_t e) {
-        const uint32_t h = 1u << e;
-        auto& l = bands.levels[e];
-        return LevelBands{{l.horizontal.data(), h + 1, h}, {l.vertical.data(), h, h + 1}, {l.diagonal.data(), h, h}};
-    };
     for (auto _ : state) {
         RangeDecoder decoder(streams[0]);
         BandModels models;
         BandCoder coder(&decoder, &models, work);
         coder.code_base({bands.base.data(), 2, 2});
         for (uint32_t e = 0; e < 8; ++e) {
-            const LevelBands parents = level(e ? e - 1 : 0);
-            benchmark::DoNotOptimize(coder.code_level(level(e), e ? &parents : nullptr));
+            const LevelBands parents = bands_of(bands, e ? e - 1 : 0);
+            benchmark::DoNotOptimize(coder.code_level(bands_of(bands, e), e ? &parents : nullptr));
         }
     }
     state.SetBytesProcessed(static_cast<int64_t>(state.iterations()) * static_cast<int64_t>(streams[0].size()));

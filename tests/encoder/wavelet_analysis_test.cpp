@@ -19,12 +19,11 @@ std::vector<typename Wavelet::Sample> synthesize_all(Pyramid<int32_t> bands, con
                                                      std::vector<typename Wavelet::Sample> image) {
     using Sample = typename Wavelet::Sample;
     for (size_t e = 1; e <= bands.levels.size(); ++e) {
-        const uint32_t h = 1u << (e - 1), side = 2 * h + 1;
-        AnalysisLevel<int32_t>& l = bands.levels[e - 1];
-        const LevelBands level = {
-            {l.horizontal.data(), h + 1, h}, {l.vertical.data(), h, h + 1}, {l.diagonal.data(), h, h}};
-        std::vector<Sample> work(synthesis_work_size(side)), out(size_t{side} * side * 3);
-        synthesize<Wavelet>(side, image.data(), level, steps[e - 1], work.data(), out.data());
+        const auto step = static_cast<uint32_t>(e);
+        const uint32_t columns = bands.columns_at(step), rows = bands.rows_at(step);
+        std::vector<Sample> work(synthesis_work_size(columns)), out(size_t{columns} * rows * 3);
+        synthesize<Wavelet>(columns, rows, image.data(), bands_of(bands, step - 1), steps[e - 1], work.data(),
+                            out.data());
         image = std::move(out);
     }
     return image;
@@ -37,6 +36,23 @@ TEST(Reversible53, EverySampleComesBackAtEverySide) {
         for (int32_t& v : image) v = static_cast<int32_t>(random.below(1u << 20));
         const Pyramid<int32_t> bands = analyse<Reversible53>(image, side);
         EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<BandSteps>(bands.levels.size()), bands.base), image);
+    }
+}
+
+TEST(Reversible53, EverySampleComesBackFromRectanglesOfAnySize) {
+    Random random(3);
+    for (uint32_t columns = 2; columns < 14; ++columns) {
+        for (const uint32_t rows : {2u, 3u, 5u, 8u, 31u}) {
+            std::vector<int32_t> image(size_t{columns} * rows * 3);
+            for (int32_t& v : image) v = static_cast<int32_t>(random.below(1u << 20));
+            for (uint32_t steps = 0; steps == 0 || std::min(halved(columns, steps - 1), halved(rows, steps - 1)) >= 2;
+                 ++steps) {
+                const Pyramid<int32_t> bands = analyse<Reversible53>(image, columns, rows, steps);
+                EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<BandSteps>(steps), bands.base), image)
+                    << columns << " x " << rows << ", " << steps << " steps";
+                if (steps == 4) break;
+            }
+        }
     }
 }
 
@@ -60,6 +76,14 @@ TEST(Irreversible97, ConstantImagesStayConstantAtEveryLevel) {
         for (const float v : l.diagonal) EXPECT_NEAR(v, 0.0f, 0.001f);
 }
 
+TEST(Irreversible97, ConstantRectanglesStayConstantAtEveryLevel) {
+    const std::vector<float> image(size_t{30} * 23 * 3, 1000.0f);
+    const Pyramid<float> bands = analyse<Irreversible97>(image, 30, 23, 3);
+    for (const float v : bands.base) EXPECT_NEAR(v, 1000.0f, 0.01f);
+    for (const auto& l : bands.levels)
+        for (const float v : l.vertical) EXPECT_NEAR(v, 0.0f, 0.001f);
+}
+
 TEST(Irreversible97, FineStepsGiveTheImageBack) {
     Random random(2);
     const uint32_t side = 65;
@@ -74,7 +98,7 @@ TEST(Irreversible97, FineStepsGiveTheImageBack) {
         return q;
     };
     Pyramid<int32_t> bands;
-    bands.side = side;
+    bands.columns = bands.rows = side;
     for (const auto& l : real.levels)
         bands.levels.push_back({to_integers(l.horizontal), to_integers(l.vertical), to_integers(l.diagonal)});
     const auto back =
@@ -88,7 +112,7 @@ TEST(BandNorms, AreThoseOfTheSynthesisFunctions) {
     for (uint32_t depth = 1; depth <= 4; ++depth) {
         for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
             Pyramid<int32_t> bands;
-            bands.side = side;
+            bands.columns = bands.rows = side;
             for (uint32_t e = 1; e <= exponent; ++e) {
                 const size_t h = size_t{1} << (e - 1);
                 bands.levels.push_back({std::vector<int32_t>((h + 1) * h * 3), std::vector<int32_t>(h * (h + 1) * 3),
