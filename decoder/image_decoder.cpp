@@ -34,8 +34,8 @@ Status image_stream(const Header& header, std::span<const uint8_t> payload, uint
 template <class Wavelet>
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                       const ImageWorkspace& ws, float** samples) {
-    const PyramidShape shape = square_shape(header.side_exponents[image], level, header.quantizer,
-                                            1 << (header.bits - 1));
+    const PyramidShape shape =
+        square_shape(header.side_exponents[image], level, header.quantizer, 1 << (header.bits - 1));
     PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
     new (ws.pyramid.models) BandModels();
     for (uint32_t l = header.level_count_of(image); l-- > level;) {

@@ -87,8 +87,8 @@ class PyramidDecoder {
         const float step = low_band_step(shape_.quantizer, shape_.steps);
         for (size_t i = 0; i < base.count(); ++i) {
             if constexpr (Wavelet::kSteps == 2) {
-                values[i] = static_cast<int32_t>(static_cast<uint32_t>(base.values[i]) +
-                                                 static_cast<uint32_t>(shape_.middle));
+                values[i] =
+                    static_cast<int32_t>(static_cast<uint32_t>(base.values[i]) + static_cast<uint32_t>(shape_.middle));
             } else {
                 values[i] = static_cast<float>(base.values[i]) * step + static_cast<float>(shape_.middle);
             }

@@ -76,7 +76,8 @@ void finish_color(float* c) {
 Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace& ws, float* values) {
     PyramidDecoder<Irreversible97> decoder(plane.shape, ws.pyramid);
     new (ws.pyramid.models) BandModels();
-    if (Status s = decode_stream(decoder, ws.pyramid, plane.chunk.stream, plane.shape.level); s != Status::kOk) return s;
+    if (Status s = decode_stream(decoder, ws.pyramid, plane.chunk.stream, plane.shape.level); s != Status::kOk)
+        return s;
     const uint32_t side = plane.side;
     const size_t count = size_t{side} * side * 3;
     const float* samples = to_units<float>(ws.pyramid.images[0], count);

@@ -20,7 +20,7 @@ constexpr size_t synthesis_work_size(uint32_t columns) { return (size_t{columns}
 // columns, rows: of the image, 2 or more. low: low_count(rows) x low_count(columns) triples. image: rows x columns triples,
 // may not overlap the inputs.
 template <class Wavelet>
-void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands, const BandSteps& steps,
-                typename Wavelet::Sample* work, typename Wavelet::Sample* image);
+void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
+                const BandSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image);
 
 }  // namespace gim

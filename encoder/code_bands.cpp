@@ -90,7 +90,9 @@ Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer) 
 }
 
 BandScratch::BandScratch(uint32_t columns)
-    : rows_(BandWork::row_size(columns) * 2), expected_(BandWork::row_size(columns)), flags_(BandWork::block_size(columns)) {}
+    : rows_(BandWork::row_size(columns) * 2),
+      expected_(BandWork::row_size(columns)),
+      flags_(BandWork::block_size(columns)) {}
 
 BandWork BandScratch::work() {
     return {rows_.data(), rows_.data() + rows_.size() / 2, expected_.data(), flags_.data()};

@@ -5,6 +5,7 @@
 
 #include "encoder/disjoint_sets.h"
 #include "encoder/result.h"
+#include "format/chart_split.h"
 
 namespace gim {
 
@@ -12,31 +13,51 @@ namespace {
 
 Error misfit(const std::string& what) { return {Stage::kSample, "the seam record does not fit the mask: " + what}; }
 
-// Samples of every path from its begin to its end node, both included.
+// What chart_split asks of a mask.
+struct MaskGrid {
+    const SampleMask& mask;
+    const std::vector<uint8_t>& border;
+    const std::vector<uint32_t>& points;
+
+    size_t index(uint32_t row, uint32_t column) const { return size_t{row} * mask.width + column; }
+    bool on_border(uint32_t row, uint32_t column) const { return border[index(row, column)] != 0; }
+    uint32_t point(uint32_t row, uint32_t column) const { return points[index(row, column)]; }
+};
+
+}  // namespace
+
 Result<std::vector<std::vector<uint32_t>>> path_samples(const SampleMask& mask, const SeamRecord& seams) {
     const std::vector<std::vector<uint32_t>> loops = trace_borders(mask);
     if (loops.size() != seams.loops.size()) return misfit("another number of charts");
+    struct Place {
+        uint32_t loop = kNone, index = 0;
+    };
+    std::vector<Place> place(mask.defined.size());
+    for (uint32_t l = 0; l < loops.size(); ++l) {
+        for (uint32_t i = 0; i < loops[l].size(); ++i) place[loops[l][i]] = {l, i};
+    }
+    std::vector<uint8_t> used(loops.size(), 0);
     std::vector<std::vector<uint32_t>> samples;
-    for (size_t l = 0; l < loops.size(); ++l) {
-        size_t at = seams.loops[l].first;
-        if (at >= loops[l].size() || seams.loops[l].path_count == 0) return misfit("a chart without a first path");
-        size_t total = 0;
-        for (uint32_t k = 0; k < seams.loops[l].path_count; ++k) {
+    for (const SeamRecord::Loop& chart : seams.loops) {
+        if (chart.start >= place.size() || place[chart.start].loop == kNone || chart.path_count == 0)
+            return misfit("a chart without a first path");
+        const std::vector<uint32_t>& loop = loops[place[chart.start].loop];
+        if (used[place[chart.start].loop]++) return misfit("two charts with one border");
+        size_t at = place[chart.start].index, total = 0;
+        for (uint32_t k = 0; k < chart.path_count; ++k) {
             if (samples.size() == seams.paths.size()) return misfit("too few paths");
             const uint32_t length = seams.paths[samples.size()].length;
             total += length;
-            if (length == 0 || total > loops[l].size()) return misfit("paths longer than their border");
+            if (length == 0 || total > loop.size()) return misfit("paths longer than their border");
             samples.emplace_back();
-            for (uint32_t i = 0; i <= length; ++i) samples.back().push_back(loops[l][(at + i) % loops[l].size()]);
+            for (uint32_t i = 0; i <= length; ++i) samples.back().push_back(loop[(at + i) % loop.size()]);
             at += length;
         }
-        if (total != loops[l].size()) return misfit("paths shorter than their border");
+        if (total != loop.size()) return misfit("paths shorter than their border");
     }
     if (samples.size() != seams.paths.size()) return misfit("too many paths");
     return samples;
 }
-
-}  // namespace
 
 Result<std::vector<uint32_t>> glue_samples(const SampleMask& mask, const SeamRecord& seams) {
     GIM_TRY(samples, path_samples(mask, seams));
@@ -65,13 +86,60 @@ Result<std::vector<uint32_t>> glue_samples(const SampleMask& mask, const SeamRec
     return representative;
 }
 
+std::vector<CellKind> classify_cells(const SampleMask& mask, const std::vector<uint32_t>& point) {
+    std::vector<uint8_t> border(mask.defined.size(), 0);
+    for (const auto& loop : trace_borders(mask)) {
+        for (const uint32_t i : loop) border[i] = 1;
+    }
+    const MaskGrid grid{mask, border, point};
+    std::vector<CellKind> kinds;
+    kinds.reserve(size_t{mask.width - 1} * (mask.height - 1));
+    for (uint32_t row = 0; row + 1 < mask.height; ++row) {
+        for (uint32_t column = 0; column + 1 < mask.width; ++column) {
+            const bool first = mask.at(column, row), second = mask.at(column + 1, row),
+                       third = mask.at(column + 1, row + 1), fourth = mask.at(column, row + 1);
+            const int count = first + second + third + fourth;
+            CellKind kind = CellKind::kEmpty;
+            if (count == 3) {
+                kind = !first    ? CellKind::kNoFirst
+                       : !second ? CellKind::kNoSecond
+                       : !third  ? CellKind::kNoThird
+                                 : CellKind::kNoFourth;
+            } else if (count == 4) {
+                const Split split = chart_split(grid, row, column);
+                kind = split == Split::kShorter ? CellKind::kShorter
+                       : split == Split::kMain  ? CellKind::kMain
+                                                : CellKind::kAnti;
+            }
+            kinds.push_back(kind);
+        }
+    }
+    return kinds;
+}
+
+CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main) {
+    const uint32_t a = first, b = first + 1, c = first + width + 1, d = first + width;
+    switch (kind) {
+        case CellKind::kEmpty:
+            return {};
+        case CellKind::kNoFirst:
+            return {{{{b, c, d}, {}}}, 1};
+        case CellKind::kNoSecond:
+            return {{{{a, c, d}, {}}}, 1};
+        case CellKind::kNoThird:
+            return {{{{a, b, d}, {}}}, 1};
+        case CellKind::kNoFourth:
+            return {{{{a, b, c}, {}}}, 1};
+        default:
+            break;
+    }
+    if (kind == CellKind::kMain || (kind == CellKind::kShorter && main)) return {{{{a, b, c}, {a, c, d}}}, 2};
+    return {{{{a, b, d}, {b, c, d}}}, 2};
+}
+
 Result<Reconstruction> reconstruct(const MultiChartImage& image) {
     const SampleMask& mask = image.mask;
     GIM_TRY(point, glue_samples(mask, image.seams));
-    std::vector<uint8_t> on_border(mask.defined.size(), 0);
-    for (const auto& loop : trace_borders(mask)) {
-        for (const uint32_t i : loop) on_border[i] = 1;
-    }
     Reconstruction result;
     std::vector<uint32_t> vertex(mask.defined.size(), kNone);
     const auto vertex_of = [&](uint32_t sample) {
@@ -83,39 +151,19 @@ Result<Reconstruction> reconstruct(const MultiChartImage& image) {
         }
         return v;
     };
-    const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
-        if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) return;
-        result.mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
+    const auto squared_distance = [&](uint32_t a, uint32_t b) {
+        return (image.positions[point[a]] - image.positions[point[b]]).squaredNorm();
     };
-    for (uint32_t row = 0; row + 1 < mask.height; ++row) {
-        for (uint32_t column = 0; column + 1 < mask.width; ++column) {
-            const uint32_t first = row * mask.width + column;
-            const std::array<uint32_t, 4> all{first, first + 1, first + mask.width + 1, first + mask.width};
-            std::array<uint32_t, 4> corner{};
-            uint32_t count = 0;
-            for (const uint32_t i : all) {
-                if (mask.defined[i]) corner[count++] = i;
-            }
-            if (count == 3) add(corner[0], corner[1], corner[2]);
-            if (count != 4) continue;
-            const bool main_on_border = on_border[all[0]] && on_border[all[2]];
-            const bool anti_on_border = on_border[all[1]] && on_border[all[3]];
-            bool main_diagonal = true;
-            if (main_on_border != anti_on_border) {
-                main_diagonal = anti_on_border;
-            } else if (!main_on_border) {
-                const auto length = [&](uint32_t a, uint32_t b) {
-                    return (image.positions[point[a]] - image.positions[point[b]]).squaredNorm();
-                };
-                main_diagonal = length(all[0], all[2]) <= length(all[1], all[3]);
-            }
-            if (main_diagonal) {
-                add(all[0], all[1], all[2]);
-                add(all[0], all[2], all[3]);
-            } else {
-                add(all[0], all[1], all[3]);
-                add(all[1], all[2], all[3]);
-            }
+    const std::vector<CellKind> kinds = classify_cells(mask, point);
+    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
+        const uint32_t first = cell / (mask.width - 1) * mask.width + cell % (mask.width - 1);
+        const bool main = kinds[cell] == CellKind::kShorter && squared_distance(first, first + mask.width + 1) <=
+                                                                   squared_distance(first + 1, first + mask.width);
+        const CellTriangles cell_triangles = triangles_of_cell(kinds[cell], first, mask.width, main);
+        for (uint32_t k = 0; k < cell_triangles.count; ++k) {
+            const auto [a, b, c] = cell_triangles.triangles[k];
+            if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) continue;
+            result.mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
         }
     }
     return result;

@@ -250,17 +250,15 @@ class Zipper {
         return owner;
     }
 
-    // Loops come in the order of their first samples; tells which chart each belongs to.
+    // Tells which border belongs to which chart.
     std::optional<Error> find_loops() {
         loops_ = trace_borders(image_.mask);
-        chart_of_loop_.clear();
         loop_of_chart_.assign(charts_.size(), kNone);
         for (uint32_t l = 0; l < loops_.size(); ++l) {
             const uint32_t c = owner_[loops_[l][0]];
             if (loop_of_chart_[c] != kNone)
                 return Error{Stage::kSample, "chart " + std::to_string(c) + " is no disk as it was packed"};
             loop_of_chart_[c] = l;
-            chart_of_loop_.push_back(c);
         }
         if (loops_.size() != charts_.size()) return Error{Stage::kSample, "packed charts touch each other"};
         return std::nullopt;
@@ -303,13 +301,12 @@ class Zipper {
         image_.seams = {};
         first_path_.assign(charts_.size(), 0);
         uint32_t count = 0;
-        for (const uint32_t c : chart_of_loop_) {
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
             first_path_[c] = count;
             count += static_cast<uint32_t>(charts_[c].paths.size());
         }
-        for (const uint32_t c : chart_of_loop_) {
-            const auto length = static_cast<uint32_t>(loops_[loop_of_chart_[c]].size());
-            image_.seams.loops.push_back({node_at_[c][0] % length, static_cast<uint32_t>(charts_[c].paths.size())});
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            image_.seams.loops.push_back({samples_of(c, 0).front(), static_cast<uint32_t>(charts_[c].paths.size())});
             for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) {
                 const ChartPath& path = charts_[c].paths[p];
                 const uint32_t mate = path.mate_chart == kNone ? kNone : first_path_[path.mate_chart] + path.mate_path;
@@ -548,7 +545,7 @@ class Zipper {
     const std::vector<ChartMap>& maps_;
     const Packing& packing_;
     std::vector<std::vector<uint32_t>> loops_, node_at_;
-    std::vector<uint32_t> owner_, chart_of_loop_, loop_of_chart_, first_path_, zipper_of_path_;
+    std::vector<uint32_t> owner_, loop_of_chart_, first_path_, zipper_of_path_;
 };
 
 }  // namespace

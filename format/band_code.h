@@ -44,7 +44,6 @@ struct LevelBands {
     Band diagonal;    // high_count(rows) x high_count(columns)
 };
 
-
 // The adaptive state of one image; it goes on from level to level.
 struct BandModels {
     static constexpr uint32_t kUnary = 14;   // decisions before the escape

@@ -10,6 +10,7 @@
 
 #include "format/ring.h"
 #include "format/sideband.h"
+#include "format/split.h"
 #include "format/status.h"
 
 namespace gim {
@@ -55,14 +56,6 @@ uint32_t ring_class_count(const SeamTable& table, uint32_t side);
 // appearance along the ring. class_of.size() == ring_length(side); (side-1) must be a multiple of (node_side-1).
 // O(side).
 void ring_classes(const SeamTable& table, uint32_t side, std::span<uint32_t> class_of);
-
-// How the cell with first sample (row, column) is cut into two triangles.
-enum class Split : uint8_t {
-    kShorter,  // along the shorter diagonal; kMain when both are equally long
-    kMain,     // (row, column) - (row+1, column+1)
-    kAnti,     // (row, column+1) - (row+1, column)
-    kNever,    // no split gives a manifold; does not happen at closed levels
-};
 
 // The rule for a cell that touches the rim. ClassAt: ring index -> anything comparable that tells classes apart.
 template <class ClassAt>

@@ -23,7 +23,7 @@ MultiChartImage pillow() {
     }
     // Left: two paths of 4 from sample 0 to 16 and back. The right side runs the other way round, so its first path
     // begins at sample 6, which is 0's mate, at index 2 of its loop, and is the mate of the left's second.
-    image.seams.loops = {{0, 2}, {2, 2}};
+    image.seams.loops = {{0, 2}, {6, 2}};
     image.seams.paths = {{3, 4}, {2, 4}, {1, 4}, {0, 4}};
     image.seams.zippers.assign(2, std::vector<ZipStep>(4, ZipStep::kBoth));
     return image;
@@ -86,7 +86,7 @@ TEST(MultiChartImage, RecordThatDoesNotFitIsRefused) {
     };
     EXPECT_FALSE(refused([](SeamRecord&) {}));
     EXPECT_TRUE(refused([](SeamRecord& s) { s.loops.pop_back(); }));
-    EXPECT_TRUE(refused([](SeamRecord& s) { s.loops[0].first = 8; }));
+    EXPECT_TRUE(refused([](SeamRecord& s) { s.loops[0].start = 8; }));
     EXPECT_TRUE(refused([](SeamRecord& s) { s.loops[0].path_count = 0; }));
     EXPECT_TRUE(refused([](SeamRecord& s) { s.loops[1].path_count = 3; }));
     EXPECT_TRUE(refused([](SeamRecord& s) { s.loops[1].path_count = 1; }));
