@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "decoder/image_decoder.h"
+#include "decoder/read_charts.h"
 #include "decoder/reopen.h"
 #include "decoder/triangulate.h"
 #include "gim/decoder.h"
@@ -40,10 +41,15 @@ struct Level {
     ImageWorkspace ws;
 };
 
-Status open_level(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level, Level* out) {
-    if (Status s = reopen(info, bytes, size, &out->header); s != Status::kOk) return s;
-    if (image >= out->header.image_count()) return Status::kBadArgument;
-    if (Status s = read_seams(out->header, span_of(bytes, size), image, &out->seams); s != Status::kOk) return s;
+// The header, for calls on one image.
+Status open_image(const gim_info* info, const void* bytes, size_t size, uint32_t image, Header* header) {
+    if (Status s = reopen(info, bytes, size, header); s != Status::kOk) return s;
+    return image < header->image_count() ? Status::kOk : Status::kBadArgument;
+}
+
+// `out->header` is of a file of squares.
+Status open_level(std::span<const uint8_t> file, uint32_t image, uint32_t level, Level* out) {
+    if (Status s = read_seams(out->header, file, image, &out->seams); s != Status::kOk) return s;
     const uint32_t steps = out->header.side(image) - 1;
     out->coarsest = 0;
     while (out->coarsest + 1 < out->header.level_count_of(image) &&
@@ -61,18 +67,13 @@ size_t scratch_size(uint32_t side) {
     return arena.used();
 }
 
-Status decode(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level, void* scratch,
-              size_t scratch_bytes, Level* out) {
-    if (Status s = open_level(info, bytes, size, image, level, out); s != Status::kOk) return s;
-    if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return Status::kBadArgument;
-    if (scratch_bytes < scratch_size(out->side)) return Status::kScratchTooSmall;
-    Arena arena(scratch);
+Status decode(std::span<const uint8_t> file, uint32_t image, uint32_t level, const Memory& scratch, Level* out) {
+    if (Status s = open_level(file, image, level, out); s != Status::kOk) return s;
+    if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
+    if (scratch.size < scratch_size(out->side)) return Status::kScratchTooSmall;
+    Arena arena(scratch.bytes);
     out->ws = lay_out(out->side, &arena);
-    return decode_level(out->header, span_of(bytes, size), image, level, out->seams, out->ws, &out->samples);
-}
-
-void to_object(const Header& header, const float* units, float* position) {
-    for (int k = 0; k < 3; ++k) position[k] = header.origin[static_cast<size_t>(k)] + header.step * units[k];
+    return decode_level(out->header, file, image, level, out->seams, out->ws, &out->samples);
 }
 
 // Calls f(vertex, sample) for every vertex of the closed mesh with its first sample.
@@ -129,7 +130,7 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     if (Status s = parse_header(span_of(bytes, size), l, &header); s != Status::kOk) return code(s);
     *info = {};
     info->version = kFormatVersion;
-    info->layout = header.layout;
+    info->layout = static_cast<uint32_t>(header.layout);
     info->coding = static_cast<uint32_t>(header.coding);
     info->bits = header.bits;
     info->image_count = header.image_count();
@@ -151,12 +152,15 @@ gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t s
                                gim_level_info* level_info) {
     if (!level_info) return code(Status::kBadArgument);
     Level l;
-    if (Status s = open_level(info, bytes, size, image, level, &l); s != Status::kOk) return code(s);
+    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
+    if (l.header.layout == FileLayout::kCharts)
+        return code(chart_level_info(l.header, span_of(bytes, size), limits_of(&info->limits), level, level_info));
+    if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
     Chunk chunk;
     uint64_t offset = 0;
     if (Status s = find_level_chunk(l.header, level, &chunk, &offset); s != Status::kOk) return code(s);
     *level_info = {};
-    level_info->side = l.side;
+    level_info->side = level_info->width = level_info->height = l.side;
     level_info->coarsest_level = l.coarsest;
     level_info->vertex_count = l.class_count + (l.side - 2) * (l.side - 2);
     level_info->triangle_count = 2 * (l.side - 1) * (l.side - 1);
@@ -175,7 +179,11 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
     Level l;
-    if (Status s = decode(info, bytes, size, image, level, scratch, scratch_bytes, &l); s != Status::kOk)
+    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
+    if (l.header.layout == FileLayout::kCharts)
+        return code(decode_chart_mesh(l.header, span_of(bytes, size), limits_of(&info->limits), level,
+                                      {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
+    if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
         return code(s);
     for_each_vertex(l, [&](uint32_t v, GridPoint p) {
         to_object(l.header, l.samples + (size_t{p.row} * l.side + p.column) * 3, positions + size_t{v} * 3);
@@ -204,7 +212,11 @@ gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size,
                            float* positions, float* normals, uint32_t* triangles, void* scratch, size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
     Level l;
-    if (Status s = decode(info, bytes, size, image, level, scratch, scratch_bytes, &l); s != Status::kOk)
+    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
+    if (l.header.layout == FileLayout::kCharts)
+        return code(decode_chart_grid(l.header, span_of(bytes, size), limits_of(&info->limits), level,
+                                      {positions, normals, nullptr, triangles}, {scratch, scratch_bytes}));
+    if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
         return code(s);
     for (size_t i = 0; i < size_t{l.side} * l.side; ++i) to_object(l.header, l.samples + i * 3, positions + i * 3);
     if (normals) sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, normals);
@@ -246,7 +258,9 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
 gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                           uint32_t* class_of, uint32_t* path_count) {
     Level l;
-    if (Status s = open_level(info, bytes, size, image, level, &l); s != Status::kOk) return code(s);
+    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
+    if (l.header.layout != FileLayout::kSquares) return code(Status::kBadArgument);
+    if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
     if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
     if (path_count) *path_count = l.seams.path_count;
     return code(Status::kOk);

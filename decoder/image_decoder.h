@@ -43,6 +43,11 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
 // The sideband of one image, checked. kMalformed also when its finest level is not closed.
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams);
 
+// Units to object space.
+inline void to_object(const Header& header, const float* units, float* position) {
+    for (int k = 0; k < 3; ++k) position[k] = header.origin[static_cast<size_t>(k)] + header.step * units[k];
+}
+
 // The chunk that holds a level of all images.
 Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
 

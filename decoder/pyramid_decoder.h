@@ -53,7 +53,9 @@ class PyramidDecoder {
   public:
     using Sample = typename Wavelet::Sample;
 
-    PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws) : shape_(shape), ws_(ws) {}
+    // done: steps that an earlier decoder of the same shape has done in the same memory.
+    PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws, uint32_t done = 0)
+        : shape_(shape), ws_(ws), done_(done), started_(done > 0) {}
 
     // All that leads to a level (0: full resolution) from where the last call has come. False: no writer's values.
     bool advance(BandCoder<RangeDecoder>& coder, uint32_t to_level) {
@@ -116,8 +118,8 @@ class PyramidDecoder {
 
     PyramidShape shape_;
     const PyramidWorkspace& ws_;
-    uint32_t done_ = 0;  // steps that are done
-    bool started_ = false;
+    uint32_t done_;  // steps that are done
+    bool started_;   // the base is there
 };
 
 // One stream of an image that has streams of its own.

@@ -1,9 +1,9 @@
 // Attribute planes of the C interface: normals and colours on grids of their own.  spec/gim-format.md, "Planes".
 #include <algorithm>
-#include <cmath>
 
 #include "decoder/image_decoder.h"
 #include "decoder/reopen.h"
+#include "decoder/vector3.h"
 #include "format/plane_code.h"
 #include "gim/decoder.h"
 
@@ -41,6 +41,7 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     Header header;
     if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return s;
     if (image >= header.image_count() || kind >= kPlaneKinds) return Status::kBadArgument;
+    if (header.layout != FileLayout::kSquares) return Status::kNoSuchPlane;
     Chunk chunk;
     uint64_t offset = 0;
     if (!find_plane(header, kind, &chunk, &offset)) return Status::kNoSuchPlane;
@@ -63,11 +64,6 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     return Status::kOk;
 }
 
-void finish_normal(float* n) {
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3; ++k) n[k] = length > 0.0f ? n[k] / length : 0.0f;
-}
-
 void finish_color(float* c) {
     from_luma(c);
     for (int k = 0; k < 3; ++k) c[k] = std::min(std::max(c[k], 0.0f), 255.0f) / 255.0f;
@@ -85,7 +81,7 @@ Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace
     ring_classes(plane.seams, side, {ws.class_of, ring_length(side)});
     average_classes(side, ws.class_of, ring_class_count(plane.seams, side), values, ws.fuse);
     for (size_t i = 0; i < count; i += 3)
-        kind == GIM_PLANE_NORMALS ? finish_normal(values + i) : finish_color(values + i);
+        kind == GIM_PLANE_NORMALS ? normalize(values + i) : finish_color(values + i);
     return Status::kOk;
 }
 

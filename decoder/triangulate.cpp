@@ -1,17 +1,12 @@
 #include "decoder/triangulate.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "decoder/vector3.h"
 #include "format/seam.h"
 
 namespace gim {
 namespace {
-
-float squared_distance(const float* a, const float* b) {
-    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
 
 // a b   a: first sample of the cell; rows go down, columns to the right; seen from outside the row axis points up, so
 // c d   that a, b, d is counter-clockwise (format/ring.h).
@@ -22,11 +17,6 @@ void write_cell(uint32_t a, uint32_t b, uint32_t c, uint32_t d, bool main, uint3
     out[3] = main ? a : b;
     out[4] = d;
     out[5] = c;
-}
-
-void normalize(float* n) {
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3; ++k) n[k] = length > 0.0f ? n[k] / length : 0.0f;
 }
 
 }  // namespace
@@ -94,9 +84,7 @@ void sample_normals(const float* samples, uint32_t side, const uint32_t* class_o
                 v[k] = down[size_t{c} * 3 + k] - up[size_t{c} * 3 + k];
             }
             float* n = normals + size_t{r} * width + size_t{c} * 3;
-            n[0] = u[1] * v[2] - u[2] * v[1];
-            n[1] = u[2] * v[0] - u[0] * v[2];
-            n[2] = u[0] * v[1] - u[1] * v[0];
+            cross(u, v, n);
         }
     }
     const uint32_t ring = ring_length(side);

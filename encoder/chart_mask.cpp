@@ -353,17 +353,26 @@ bool mask_is_disk(const SampleMask& mask) {
 }
 
 ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double angle) {
+    ChartPose pose{scale, angle, Vec2::Zero()};
+    Vec2 low = pose(border[0]);
+    for (const Vec2& p : border) low = low.cwiseMin(pose(p));
+    pose.offset = -low;
+    return rasterize_chart_on_lattice(border, pose);
+}
+
+ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose) {
     ChartMask chart;
-    chart.pose = {scale, angle, Vec2::Zero()};
+    chart.pose = pose;
     std::vector<Vec2> polygon;
     polygon.reserve(border.size());
-    for (const Vec2& p : border) polygon.push_back(chart.pose(p));
+    for (const Vec2& p : border) polygon.push_back(pose(p));
     Vec2 low = polygon[0], high = low;
     for (const Vec2& p : polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
     constexpr double kMargin = 3;  // room for the band and the dilation
-    chart.pose.offset = Vec2(kMargin, kMargin) - low;
-    for (Vec2& p : polygon) p += chart.pose.offset;
-    const Vec2 extent = (high - low).array().ceil() + 2 * kMargin + 1;
+    const Vec2 shift = Vec2(kMargin, kMargin) - Vec2(low.array().floor());
+    chart.pose.offset += shift;
+    for (Vec2& p : polygon) p += shift;
+    const Vec2 extent = (high + shift).array().ceil() + kMargin + 1;
     chart.mask.width = static_cast<uint32_t>(extent.x());
     chart.mask.height = static_cast<uint32_t>(extent.y());
     chart.mask.defined.assign(size_t{chart.mask.width} * chart.mask.height, 0);

@@ -9,7 +9,6 @@
 #include "encoder/pack.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
-#include "encoder/topology_summary.h"
 #include "encoder/zipper.h"
 
 namespace gim {
@@ -29,11 +28,6 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
         shapes.push_back(std::move(shape));
     }
     return shapes;
-}
-
-bool same_topology(const TopologySummary& a, const TopologySummary& b) {
-    return a.manifold && b.manifold && a.components == b.components && a.boundary_loops == b.boundary_loops &&
-           a.genus == b.genus;
 }
 
 }  // namespace
@@ -56,6 +50,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
     pack_options.threads = options.threads;
     constexpr uint32_t kMostPackings = 12;
     MultiChart result;
+    result.topology = wanted;
     for (;; ++result.packings) {
         clock.begin(Stage::kSample);
         GIM_TRY(packing, pack(shapes_of(atlas), pack_options, clock.progress()));
@@ -77,10 +72,11 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             continue;
         }
         result.image = std::move(zipped.value());
-        result.charts = static_cast<uint32_t>(atlas.charts.size());
         result.stretch_efficiency = stretch_efficiency(atlas.charts, atlas.maps);
         result.packing_efficiency =
             static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
+        result.atlas = std::move(atlas);
+        result.packing = std::move(packing);
         break;
     }
     GIM_TRY(surface, reconstruct(result.image));

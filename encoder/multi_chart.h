@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "encoder/chart_images.h"
 #include "encoder/mesh.h"
 #include "encoder/multi_chart_image.h"
 #include "encoder/stage_clock.h"
@@ -21,7 +22,9 @@ struct MultiChartOptions {
 
 struct MultiChart {
     MultiChartImage image;
-    uint32_t charts = 0;
+    Atlas atlas;              // what the image was made from
+    Packing packing;
+    TopologySummary topology;  // of the mesh
     double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1
     uint32_t packings = 1;                                  // how many it took to get one whose seams close
 };

@@ -13,16 +13,10 @@
 
 #include "encoder/chart_mask.h"
 #include "encoder/mesh.h"
+#include "format/chart_border.h"
 #include "gim/encoder.h"
 
 namespace gim {
-
-// One step of a zipper from sample to sample along two mated paths, the second walked backwards.
-enum class ZipStep : uint8_t {
-    kBoth = 0,    // on to the next sample on both sides, which become one surface point
-    kFirst = 1,   // on along the first path: its next sample joins the current point
-    kSecond = 2,  // on along the second
-};
 
 struct SeamPath {
     uint32_t mate = kNone;  // number of the path on the other side, or kNone: an input boundary

@@ -34,6 +34,38 @@ void analyse_row(const typename Wavelet::Sample* row, size_t lows, size_t highs,
     }
 }
 
+// The two undone.
+template <class Wavelet>
+void restore_columns(typename Wavelet::Sample* image, uint32_t columns, uint32_t rows) {
+    const size_t width = size_t{columns} * 3, lows = low_count(rows), highs = high_count(rows);
+    const auto low = [&](size_t i) { return image + 2 * std::min(i, lows - 1) * width; };
+    const auto high = [&](size_t i) { return image + (2 * std::min(i, highs - 1) + 1) * width; };
+    for (int step = Wavelet::kSteps - 2; step >= 0; step -= 2) {
+        for (size_t i = 0; i < lows; ++i)
+            lift_row<Wavelet, Direction::kSynthesis>(step + 1, low(i), high(i == 0 ? 0 : i - 1), high(i), width);
+        for (size_t i = 0; i < highs; ++i)
+            lift_row<Wavelet, Direction::kSynthesis>(step, high(i), low(i), low(i + 1), width);
+    }
+}
+
+template <class Wavelet>
+void restore_row(typename Wavelet::Sample* low, typename Wavelet::Sample* high, size_t lows, size_t highs,
+                 typename Wavelet::Sample* row) {
+    for (int step = Wavelet::kSteps - 2; step >= 0; step -= 2) {
+        std::copy_n(high, 3, high - 3);
+        std::copy_n(high + 3 * (highs - 1), 3, high + 3 * highs);
+        lift_row<Wavelet, Direction::kSynthesis>(step + 1, low, high - 3, high, 3 * lows);
+        std::copy_n(low + 3 * (lows - 1), 3, low + 3 * lows);
+        lift_row<Wavelet, Direction::kSynthesis>(step, high, low, low + 3, 3 * highs);
+    }
+    for (size_t i = 0; i < lows; ++i) std::copy_n(low + 3 * i, 3, row + 6 * i);
+    for (size_t i = 0; i < highs; ++i) std::copy_n(high + 3 * i, 3, row + 6 * i + 3);
+}
+
+void from_unit_gain(int32_t*, size_t) {}
+void from_unit_gain(float* low, size_t count) {
+    for (size_t i = 0; i < count; ++i) low[i] = low[i] * Irreversible97::kLowGain;
+}
 void to_unit_gain(int32_t*, size_t) {}
 void to_unit_gain(float* low, size_t count) {
     for (size_t i = 0; i < count; ++i) low[i] = low[i] / Irreversible97::kLowGain;
@@ -74,6 +106,31 @@ Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> 
     return pyramid;
 }
 
+template <class Wavelet>
+std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid) {
+    using Sample = typename Wavelet::Sample;
+    std::vector<Sample> image = pyramid.base;
+    for (uint32_t step = 1; step <= pyramid.steps(); ++step) {
+        const uint32_t columns = pyramid.columns_at(step), rows = pyramid.rows_at(step);
+        const size_t lows = low_count(columns), highs = high_count(columns);
+        const AnalysisLevel<Sample>& level = pyramid.levels[step - 1];
+        std::vector<Sample> next(size_t{columns} * rows * 3), low((lows + 1) * 3), high((highs + 2) * 3);
+        for (size_t r = 0; r < rows; ++r) {
+            const auto& from_low = r % 2 == 0 ? image : level.vertical;
+            const auto& from_high = r % 2 == 0 ? level.horizontal : level.diagonal;
+            std::copy_n(from_low.begin() + static_cast<ptrdiff_t>((r / 2) * lows * 3), lows * 3, low.begin());
+            std::copy_n(from_high.begin() + static_cast<ptrdiff_t>((r / 2) * highs * 3), highs * 3, high.begin() + 3);
+            if (r % 2 == 0) from_unit_gain(low.data(), lows * 3);
+            restore_row<Wavelet>(low.data(), high.data() + 3, lows, highs, next.data() + r * columns * 3);
+        }
+        restore_columns<Wavelet>(next.data(), columns, rows);
+        image = std::move(next);
+    }
+    return image;
+}
+
+template std::vector<int32_t> restore<Reversible53>(const Pyramid<int32_t>&);
+template std::vector<float> restore<Irreversible97>(const Pyramid<float>&);
 template Pyramid<int32_t> analyse<Reversible53>(std::vector<int32_t>, uint32_t, uint32_t, uint32_t);
 template Pyramid<float> analyse<Irreversible97>(std::vector<float>, uint32_t, uint32_t, uint32_t);
 

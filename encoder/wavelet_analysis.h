@@ -42,6 +42,10 @@ Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> 
     return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)));
 }
 
+// The image again. The decoder has the inverse that counts (decoder/synthesis.h); this one takes bands as analyse gives them.
+template <class Wavelet>
+std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid);
+
 // The bands of levels[index].
 inline LevelBands bands_of(Pyramid<int32_t>& pyramid, uint32_t index) {
     const uint32_t columns = pyramid.columns_at(index + 1), rows = pyramid.rows_at(index + 1);

@@ -1,14 +1,12 @@
 #include "encoder/write_gim.h"
 
-#include <zstd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "encoder/assemble_file.h"
 #include "encoder/code_bands.h"
 #include "format/bytes.h"
-#include "format/checksum.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 
@@ -49,72 +47,10 @@ std::string complaint(std::span<const GeometryImage> images, const CodingParamet
     return {};
 }
 
-struct Box {
-    Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
-};
-
-Box bounding_box(std::span<const GeometryImage> images) {
-    Box box;
-    for (const GeometryImage& image : images) {
-        for (const Vec3& p : image.positions) {
-            box.low = box.low.cwiseMin(p);
-            box.high = box.high.cwiseMax(p);
-        }
-    }
-    return box;
-}
-
-// Positions in units of the header's quantizer, as interleaved triples.
-template <class Sample>
-std::vector<Sample> to_units(const GeometryImage& image, const Header& header) {
-    std::vector<Sample> units;
-    units.reserve(image.positions.size() * 3);
-    const double most = std::exp2(header.bits) - 1;
-    for (const Vec3& p : image.positions) {
-        for (int k = 0; k < 3; ++k) {
-            const double unit = (p[k] - double{header.origin[static_cast<size_t>(k)]}) / double{header.step};
-            if constexpr (std::is_integral_v<Sample>) {
-                units.push_back(static_cast<Sample>(std::clamp(std::floor(unit + 0.5), 0.0, most)));
-            } else {
-                units.push_back(static_cast<Sample>(unit));
-            }
-        }
-    }
-    return units;
-}
-
 // The base is stored relative to the middle of the range.
 template <class Sample>
 void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
     for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
-}
-
-struct Payload {
-    Chunk chunk;
-    std::vector<uint8_t> bytes;
-};
-
-Payload make_payload(ChunkType type, bool optional, std::vector<uint8_t> bytes) {
-    Payload p;
-    p.chunk.type = type;
-    p.chunk.optional = optional;
-    p.chunk.size = p.chunk.raw_size = bytes.size();
-    p.chunk.crc = crc16(bytes);
-    p.bytes = std::move(bytes);
-    return p;
-}
-
-// Compressed where that is smaller.
-Payload make_text_payload(const std::string& text) {
-    std::vector<uint8_t> raw(text.begin(), text.end());
-    std::vector<uint8_t> packed(ZSTD_compressBound(raw.size()));
-    const size_t size = ZSTD_compress(packed.data(), packed.size(), raw.data(), raw.size(), 19);
-    if (ZSTD_isError(size) || size + 2 >= raw.size()) return make_payload(ChunkType::kText, true, std::move(raw));
-    packed.resize(size);
-    Payload p = make_payload(ChunkType::kText, true, std::move(packed));
-    p.chunk.zstd = true;
-    p.chunk.raw_size = raw.size();
-    return p;
 }
 
 }  // namespace
@@ -135,25 +71,21 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
                               ? static_cast<uint32_t>(std::countr_zero(parameters.base_side - 1))
                               : 4;
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
-    header.bits = parameters.bits;
     header.level_count = largest > base ? largest - base + 1 : 1;
     writer.planes_ = parameters.planes;
     writer.text_ = parameters.text;
     if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
 
-    // One isotropic step for the file. A surface that is a single point still needs a positive one.
-    const Box box = bounding_box(images);
-    const double extent = (box.high - box.low).maxCoeff();
-    const double smallest = std::max(double{kMinStep}, box.low.cwiseAbs().maxCoeff() * 0x1p-60);
-    header.step = static_cast<float>(std::max(extent / (std::exp2(parameters.bits) - 1), smallest));
-    for (int k = 0; k < 3; ++k) header.origin[static_cast<size_t>(k)] = static_cast<float>(box.low[k]);
+    std::vector<std::span<const Vec3>> positions;
+    for (const GeometryImage& image : images) positions.push_back(image.positions);
+    set_quantizer(positions, parameters.bits, &header);
 
     for (const GeometryImage& image : images) {
         if (parameters.lossless) {
-            writer.lossless_.push_back(analyse<Reversible53>(to_units<int32_t>(image, header), image.side));
+            writer.lossless_.push_back(analyse<Reversible53>(to_units<int32_t>(image.positions, header), image.side));
             subtract_middle(&writer.lossless_.back(), header.bits);
         } else {
-            writer.lossy_.push_back(analyse<Irreversible97>(to_units<float>(image, header), image.side));
+            writer.lossy_.push_back(analyse<Irreversible97>(to_units<float>(image.positions, header), image.side));
             subtract_middle(&writer.lossy_.back(), header.bits);
         }
     }
@@ -183,21 +115,12 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
         }
     }
 
-    std::vector<Payload> payloads;
-    payloads.push_back(make_payload(ChunkType::kSeams, false, seams_));
+    std::vector<std::vector<uint8_t>> levels;
     for (uint32_t level = header.level_count; level-- > 0;) {
-        std::vector<uint8_t> payload = std::move(sizes[level]);
-        payload.insert(payload.end(), streams[level].begin(), streams[level].end());
-        payloads.push_back(make_payload(ChunkType::kLevel, false, std::move(payload)));
+        levels.push_back(std::move(sizes[level]));
+        levels.back().insert(levels.back().end(), streams[level].begin(), streams[level].end());
     }
-    for (const CodedPlane& plane : planes_) payloads.push_back(make_payload(plane.type, true, plane.payload));
-    if (!text_.empty()) payloads.push_back(make_text_payload(text_));
-
-    std::vector<Chunk> chunks;
-    for (const Payload& p : payloads) chunks.push_back(p.chunk);
-    std::vector<uint8_t> file = serialize_header(header, chunks);
-    for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
-    return file;
+    return assemble_file(header, seams_, levels, planes_, text_);
 }
 
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {

@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "encoder/assemble_file.h"
 #include "encoder/geometry_image.h"
 #include "encoder/result.h"
 #include "encoder/wavelet_analysis.h"
 #include "format/container.h"
 
 namespace gim {
-
-// An attribute plane, ready to be stored (format/plane_code.h).
-struct CodedPlane {
-    ChunkType type = ChunkType::kNormals;
-    std::vector<uint8_t> payload;
-};
 
 struct CodingParameters {
     bool lossless = true;  // the quantized image is kept exactly
@@ -30,13 +25,12 @@ struct CodingParameters {
 };
 
 // All that does not depend on the quantizer, so that a search over quantizers does it once.
-class GimWriter {
+class GimWriter final : public FileWriter {
   public:
     // Images: at least one, sides 2^j+1, finite positions, sidebands that close the finest level.
     static Result<GimWriter> create(std::span<const GeometryImage> images, const CodingParameters& parameters);
 
-    // quantizer: as CodingParameters::quantizer; ignored by lossless coding. Cost O(samples).
-    std::vector<uint8_t> write(double quantizer) const;
+    std::vector<uint8_t> write(double quantizer) const override;
 
   private:
     GimWriter() = default;

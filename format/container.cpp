@@ -63,6 +63,40 @@ Status check_index(Header* header) {
     return seams == 1 && levels == header->level_count ? Status::kOk : Status::kMalformed;
 }
 
+Status parse_sides(ByteReader* reader, const ContainerLimits& limits, std::span<const uint8_t> file, Header* header) {
+    uint64_t images = 0;
+    if (!reader->read_leb128(&images) || images == 0 || images > kMaxImages) return Status::kMalformed;
+    if (images > limits.max_images) return Status::kLimitExceeded;
+
+    // At least one image has all the levels; all of them together stay within the caller's limit.
+    const size_t sides_at = reader->position();
+    if (!reader->skip(images)) return Status::kMalformed;
+    header->side_exponents = file.subspan(sides_at, images);
+    uint8_t largest = 0;
+    for (const uint8_t j : header->side_exponents) {
+        if (j < 1 || j > kMaxSideExponent) return Status::kMalformed;
+        const uint64_t side = (uint64_t{1} << j) + 1;
+        header->sample_count += side * side;  // at most 2^16 * 2^29
+        largest = std::max(largest, j);
+    }
+    if (largest < header->level_count) return Status::kMalformed;
+    if ((1u << largest) + 1 > limits.max_side || header->sample_count > limits.max_samples)
+        return Status::kLimitExceeded;
+    return Status::kOk;
+}
+
+Status parse_rectangle(ByteReader* reader, const ContainerLimits& limits, Header* header) {
+    uint64_t width = 0, height = 0;
+    if (!reader->read_leb128(&width) || !reader->read_leb128(&height)) return Status::kMalformed;
+    if (width < 2 || height < 2 || width > kMaxAtlasSide || height > kMaxAtlasSide) return Status::kMalformed;
+    header->width = static_cast<uint32_t>(width);
+    header->height = static_cast<uint32_t>(height);
+    header->sample_count = width * height;
+    if (std::max(width, height) > limits.max_side || header->sample_count > limits.max_samples)
+        return Status::kLimitExceeded;
+    return Status::kOk;
+}
+
 }  // namespace
 
 Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header) {
@@ -93,32 +127,17 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     ByteReader reader(file.first(body));
     reader.skip(preamble.position());
     uint8_t kind = 0, bits = 0, levels = 0;
-    uint64_t images = 0;
-    if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels) || !reader.read_leb128(&images))
-        return Status::kMalformed;
-    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) != 0) return Status::kUnsupportedVersion;
-    if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels || images == 0 || images > kMaxImages)
-        return Status::kMalformed;
-    header->layout = kind & kLayoutMask;
+    if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels)) return Status::kMalformed;
+    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) > static_cast<uint8_t>(FileLayout::kCharts))
+        return Status::kUnsupportedVersion;
+    if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels) return Status::kMalformed;
+    header->layout = static_cast<FileLayout>(kind & kLayoutMask);
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
     header->bits = bits;
     header->level_count = levels;
-    if (images > limits.max_images) return Status::kLimitExceeded;
-
-    // At least one image has all the levels; all of them together stay within the caller's limit.
-    const size_t sides_at = reader.position();
-    if (!reader.skip(images)) return Status::kMalformed;
-    header->side_exponents = file.subspan(sides_at, images);
-    uint8_t largest = 0;
-    for (const uint8_t j : header->side_exponents) {
-        if (j < 1 || j > kMaxSideExponent) return Status::kMalformed;
-        const uint64_t side = (uint64_t{1} << j) + 1;
-        header->sample_count += side * side;  // at most 2^16 * 2^29
-        largest = std::max(largest, j);
-    }
-    if (largest < levels) return Status::kMalformed;
-    if ((1u << largest) + 1 > limits.max_side || header->sample_count > limits.max_samples)
-        return Status::kLimitExceeded;
+    const Status shape =
+        header->layout == FileLayout::kCharts ? parse_rectangle(&reader, limits, header) : parse_sides(&reader, limits, file, header);
+    if (shape != Status::kOk) return shape;
 
     for (float& o : header->origin) {
         if (!reader.read_f32(&o) || !in_range(o, -kMaxOrigin, kMaxOrigin)) return Status::kMalformed;
@@ -152,12 +171,17 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(static_cast<uint8_t>(header.layout | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+    rest.push_back(static_cast<uint8_t>(static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
                                         (header.level_psnr.empty() ? 0 : kPsnrFlag)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
-    append_leb128(header.image_count(), &rest);
-    for (const uint8_t exponent : header.side_exponents) rest.push_back(exponent);
+    if (header.layout == FileLayout::kCharts) {
+        append_leb128(header.width, &rest);
+        append_leb128(header.height, &rest);
+    } else {
+        append_leb128(header.image_count(), &rest);
+        for (const uint8_t exponent : header.side_exponents) rest.push_back(exponent);
+    }
     for (const float o : header.origin) append_f32(o, &rest);
     append_f32(header.step, &rest);
     if (header.coding == Coding::kLossy) append_f32(header.quantizer, &rest);

@@ -17,10 +17,15 @@ namespace gim {
 inline constexpr std::array<uint8_t, 7> kMagic = {0x89, 'G', 'I', 'M', 0x0D, 0x0A, 0x1A};
 inline constexpr uint8_t kFormatVersion = 1;
 
+enum class FileLayout : uint8_t {
+    kSquares = 0,  // gim: an image per component, a square each
+    kCharts = 1,   // mcgim: one image of charts (format/chart_table.h)
+};
+
 enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };
 
 enum class ChunkType : uint32_t {
-    kSeams = 0,    // SEAM, critical: the sidebands of all images
+    kSeams = 0,    // SEAM, critical: the sidebands of all images, or the chart table
     kLevel = 1,    // LEVL, critical: one level of all images; coarsest first
     kText = 2,     // META, optional: UTF-8 text about the file
     kNormals = 3,  // NRML, optional: normals at a resolution of their own (format/plane_code.h)
@@ -35,6 +40,7 @@ struct ContainerLimits {
 
 inline constexpr uint32_t kMinBits = 8, kMaxBits = 20;
 inline constexpr uint32_t kMaxImages = 65536;
+inline constexpr uint32_t kMaxAtlasSide = 65536;
 inline constexpr uint32_t kMaxLevels = 14;
 inline constexpr uint64_t kMaxIndexSize = uint64_t{1} << 24;
 inline constexpr float kMaxOrigin = 0x1p100f;                              // greatest absolute value
@@ -52,24 +58,27 @@ struct Chunk {
 
 // Header fields as stored; `side_exponents` and `index` point into the parsed bytes.
 struct Header {
-    uint8_t layout = 0;
+    FileLayout layout = FileLayout::kSquares;
     Coding coding = Coding::kLossless;
     uint32_t bits = 12;
     uint32_t level_count = 0;
     std::array<float, 3> origin{};
     float step = 1;
     float quantizer = 0;                      // kLossy only
-    std::span<const uint8_t> side_exponents;  // one per image; side = 2^j + 1
+    std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
+    uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
     std::span<const uint8_t> level_psnr;      // empty, or per level, coarsest first: half decibels, 0: not known
 
     // Derived.
     std::span<const uint8_t> index;
     uint32_t chunk_count = 0;
     uint32_t index_size = 0;    // bytes from the start of the file to the first chunk
-    uint64_t sample_count = 0;  // of all images
+    uint64_t sample_count = 0;  // of all images, or of the rectangle
     uint64_t file_size = 0;
 
-    uint32_t image_count() const { return static_cast<uint32_t>(side_exponents.size()); }
+    uint32_t image_count() const {
+        return layout == FileLayout::kCharts ? 1 : static_cast<uint32_t>(side_exponents.size());
+    }
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
     // Levels 0 .. level_count_of(image)-1 are stored; the coarsest of them has at least 3 samples a side.
     uint32_t level_count_of(uint32_t image) const {

@@ -86,10 +86,11 @@ GIM_API gim_status gim_read_info(const void* bytes, size_t size, const gim_limit
 
 /* One level of one image. */
 typedef struct gim_level_info {
-    uint32_t side;           /* samples per side */
+    uint32_t side;           /* GIM_LAYOUT_GIM: samples per side; else 0 */
+    uint32_t width, height;  /* of the grid of samples; width == height == side where there is one */
     uint32_t coarsest_level; /* the coarsest level of this image that its seams can close */
     uint32_t vertex_count;   /* of the fused mesh: mates share one vertex */
-    uint32_t triangle_count; /* 2 * (side-1)^2 */
+    uint32_t triangle_count;
     uint64_t prefix_size;    /* bytes of the file, from its start, that this level needs */
     uint64_t scratch_size;   /* bytes of scratch for the decode calls on this level */
 } gim_level_info;

@@ -1,0 +1,69 @@
+// One level of a multi-chart image: borders and streams -> samples of every chart -> zippered.
+// spec/gim-format.md, "Charts".
+// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5. Each point of a seam
+// becomes the mean of its samples, and the correction fades out into the charts, as lossy coding moves both sides.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "decoder/arena.h"
+#include "decoder/pyramid_decoder.h"
+#include "format/chart_border.h"
+#include "format/chart_table.h"
+#include "format/container.h"
+
+namespace gim {
+
+// Sizes of one level, from the chart table alone.
+struct ChartLevelShape {
+    uint32_t level = 0;
+    uint32_t chart_count = 0, path_count = 0;
+    uint64_t samples = 0, low_samples = 0;  // of all boxes at this level, and halved once more
+    uint32_t widest = 0;                    // columns of a box at this level
+    uint32_t columns = 0, rows = 0;         // of the level's grid, in which the charts lie
+    LevelSize size;
+};
+
+// One chart at one level. Its samples are the `columns` x `rows` from flat index `first` on.
+struct DecodedChart {
+    ChartBox box;
+    uint32_t columns = 0, rows = 0;
+    uint32_t grid_column = 0, grid_row = 0;  // of its first sample in the level's grid; modulo 2^32: may lie outside
+    uint32_t first = 0;
+    BorderChart border;
+};
+
+inline constexpr uint8_t kOnBorder = 0, kInside = 254, kUndefined = 255;
+
+// Arrays of a level in the caller's scratch.
+struct ChartWorkspace {
+    PyramidWorkspace pyramid;  // whose planes hold all charts', one after the other
+    DecodedChart* charts = nullptr;
+    BorderPath* paths = nullptr;
+    uint32_t* mates = nullptr;
+    BorderModels* border_models = nullptr;
+    // Per sample of all boxes:
+    uint32_t* border = nullptr;   // border samples, chart after chart
+    uint32_t* point = nullptr;    // vertex of the glued surface; unspecified where undefined
+    uint8_t* depth = nullptr;     // kOnBorder, steps to the border as far as they are known, kInside, kUndefined
+    uint32_t* queue = nullptr;
+    float* corrections = nullptr;  // triples
+    // Per vertex:
+    uint32_t* members = nullptr;
+    float* sums = nullptr;  // triples
+};
+
+// How many layers of samples inside a border get a part of its corrections.
+uint32_t chart_diffusion_width(uint32_t columns, uint32_t rows);
+
+Status open_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
+                   ChartLevelShape* shape);
+
+ChartWorkspace lay_out_charts(const ChartLevelShape& shape, Arena* arena);
+
+// Decodes and zips. `samples` receives flat triples in units.
+Status decode_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                     const ChartLevelShape& shape, const ChartWorkspace& ws, const float** samples);
+
+}  // namespace gim

@@ -1,0 +1,22 @@
+// Values for the undefined samples of a chart's box that cost the wavelet coder least.
+//
+// The decoder ignores undefined samples, so they may be anything: we look for values whose wavelet coefficients are small.
+// After: the projections onto convex sets of Chen, Civanlar, Haskell (A block transform coder for arbitrarily shaped image
+// segments. ICIP 1994): in turn the small coefficients are dropped and the defined samples put back. Measured against a
+// shape-adaptive wavelet it leaves the decoder as it is for squares.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "encoder/wavelet_analysis.h"
+
+namespace gim {
+
+// values: rows * columns triples, of which those of defined samples stay. Cost: some 30 transforms.
+template <class Wavelet>
+std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet::Sample> values,
+                                                   const std::vector<uint8_t>& defined, uint32_t columns, uint32_t rows,
+                                                   uint32_t steps, float finest);
+
+}  // namespace gim
