@@ -54,7 +54,7 @@ std::vector<double> importance_from_error(const Mesh& mesh, const std::vector<Ve
                                           const DensityOptions& options) {
     auto gluing = glue_ring(image.sideband, image.side);
     if (!gluing.ok()) return {};
-    const Mesh surface{image.positions, triangulate_grid(image.positions, image.side, gluing.value())};
+    const Mesh surface{image.positions, triangulate_grid(image.positions, gluing.value()).triangles};
     const std::vector<ClosestPoint> closest = ClosestPointTree(surface).find_all(mesh.positions);
     const VertexAreas areas = vertex_areas(mesh, uv);
 

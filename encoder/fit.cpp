@@ -128,11 +128,23 @@ struct Reference {
 // The image's surface as it is now.
 struct ImageSurface {
     Mesh mesh;
-    std::vector<Vec3> normals;  // per face; zero where there is no area
+    std::vector<uint32_t> slot;  // per face
+    std::vector<Vec3> normals;   // per face; zero where there is no area
     std::vector<double> areas;
 
-    ImageSurface(const std::vector<Vec3>& positions, uint32_t side, const RingGluing& gluing)
-        : mesh{positions, triangulate_grid(positions, side, gluing)},
+    ImageSurface(const std::vector<Vec3>& positions, const GridGluing& gluing)
+        : ImageSurface(positions, triangulate_grid(positions, gluing)) {}
+
+    double area() const {
+        double sum = 0;
+        for (const double a : areas) sum += a;
+        return sum;
+    }
+
+  private:
+    ImageSurface(const std::vector<Vec3>& positions, GridFaces faces)
+        : mesh{positions, std::move(faces.triangles)},
+          slot(std::move(faces.slot)),
           normals(mesh.triangles.size()),
           areas(normals.size()) {
         parallel_blocks(normals.size(), 16384, 0, [&](size_t, size_t begin, size_t end) {
@@ -157,10 +169,10 @@ bool touches(const Triangle& t, const std::vector<bool>& marked) {
 
 // Distances by fresh samples, folds at the centres of the faces; `front` is the sign that makes the image face
 // outwards.
-FitQuality measure(const std::vector<Vec3>& positions, uint32_t side, const RingGluing& gluing,
-                   const Reference& reference, const std::vector<bool>& held, double front) {
+FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const Reference& reference,
+                   const std::vector<bool>& held, double front) {
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
-    const ImageSurface image(positions, side, gluing);
+    const ImageSurface image(positions, gluing);
     const auto density = static_cast<uint32_t>(std::max<size_t>(20000, 2 * image.mesh.triangles.size()));
     FitQuality quality;
 
@@ -194,9 +206,8 @@ FitQuality measure(const std::vector<Vec3>& positions, uint32_t side, const Ring
 }
 
 // +1 if most of the image's area looks the way the reference does, else -1.
-double front_side(const std::vector<Vec3>& positions, uint32_t side, const RingGluing& gluing,
-                  const Reference& reference) {
-    const ImageSurface image(positions, side, gluing);
+double front_side(const std::vector<Vec3>& positions, const GridGluing& gluing, const Reference& reference) {
+    const ImageSurface image(positions, gluing);
     const SurfaceSamples samples = sample_by_area(image.mesh, 4000, 1);
     const std::vector<ClosestPoint> found = reference.tree.find_all(samples.points);
     double sum = 0;
@@ -237,7 +248,7 @@ struct System {
     StencilMatrix matrix;
     std::vector<Vec3> right;
 
-    explicit System(uint32_t side) : matrix(side), right(size_t{side} * side, Vec3::Zero()) {}
+    System(uint32_t width, uint32_t height) : matrix(width, height), right(size_t{width} * height, Vec3::Zero()) {}
 
     void add(const Triangle& corners, const Pull& pull) {
         const Vec3& n = pull.normal;
@@ -282,16 +293,17 @@ void for_cell_rows(uint32_t cell_rows, const Body& body) {
 }
 
 void add_pulls(System& system, const ImageSurface& image, const std::vector<Pull>& pulls) {
-    const uint32_t cell_rows = std::max(2u, system.matrix.side()) - 1;
+    const uint32_t cell_rows = system.matrix.height() - 1, slots_per_row = 2 * (system.matrix.width() - 1);
     // Counting sort by row of cells; inside a row the order of the samples.
     std::vector<uint32_t> first(cell_rows + 1, 0);
+    const auto row_of = [&](const Pull& pull) { return image.slot[pull.face] / slots_per_row; };
     for (const Pull& pull : pulls) {
-        if (pull.face != kNone) ++first[pull.face / 2 / cell_rows + 1];
+        if (pull.face != kNone) ++first[row_of(pull) + 1];
     }
     for (uint32_t row = 0; row < cell_rows; ++row) first[row + 1] += first[row];
     std::vector<uint32_t> order(first.back()), fill(first.begin(), first.end() - 1);
     for (uint32_t k = 0; k < pulls.size(); ++k) {
-        if (pulls[k].face != kNone) order[fill[pulls[k].face / 2 / cell_rows]++] = k;
+        if (pulls[k].face != kNone) order[fill[row_of(pulls[k])]++] = k;
     }
     for_cell_rows(cell_rows, [&](uint32_t row) {
         for (uint32_t k = first[row]; k < first[row + 1]; ++k) {
@@ -306,14 +318,14 @@ void add_pulls(System& system, const ImageSurface& image, const std::vector<Pull
 
 class Fitter {
   public:
-    Fitter(const GeometryImage& start, const Reference& reference, const RingGluing& gluing, const Frame& frame,
+    Fitter(const std::vector<Vec3>& start, const Reference& reference, const GridGluing& gluing, const Frame& frame,
            const FitOptions& options)
-        : side_(start.side),
-          gluing_(gluing),
+        : gluing_(gluing),
           reference_(reference),
-          x_(frame.into(start.positions)),
+          x_(frame.into(start)),
           held_(options.held),
-          face_hint_(size_t{2} * (side_ - 1) * (side_ - 1), kNone) {
+          samples_(static_cast<double>(gluing.defined_count())),
+          face_hint_(2 * gluing.kind.size(), kNone) {
         if (held_.empty()) held_.assign(x_.size(), false);
         // A class is held, and at one place, as a whole.
         for (const auto& members : gluing_.shared) {
@@ -335,12 +347,12 @@ class Fitter {
             if (!has_curve_) fixed_[v] = true;
             on_boundary_.push_back(v);
         }
-        front_ = front_side(x_, side_, gluing_, reference_);
+        front_ = front_side(x_, gluing_, reference_);
     }
 
     const std::vector<Vec3>& positions() const { return x_; }
     const std::vector<bool>& held() const { return held_; }
-    FitQuality quality() const { return measure(x_, side_, gluing_, reference_, held_, front_); }
+    FitQuality quality() const { return measure(x_, gluing_, reference_, held_, front_); }
 
     // Where faces look away from the surface, slides the samples around them along it towards the middle of their
     // neighbours. Sampling leaves such faces where the map squeezes the surface: its rows are then nearer to each other
@@ -348,45 +360,45 @@ class Fitter {
     void unfold() {
         const std::vector<Vec3> origin = x_;
         for (int pass = 0; pass < kUnfoldPasses; ++pass) {
-            const ImageSurface image(x_, side_, gluing_);
+            const ImageSurface image(x_, gluing_);
             const std::vector<uint32_t> steep = steep_cells(image);
             if (steep.empty()) break;
-            double area = 0;
-            for (const double a : image.areas) area += a;
-            relax(samples_around(steep), origin, kUnfoldReach * std::sqrt(area / static_cast<double>(x_.size())));
+            relax(samples_around(steep), origin, kUnfoldReach * std::sqrt(image.area() / samples_));
         }
     }
 
     void round(double lambda, double density, uint64_t seed, bool guarded) {
-        const ImageSurface image(x_, side_, gluing_);
+        const ImageSurface image(x_, gluing_);
         find_vertex_frames(image);
-        System system(side_);
+        System system(gluing_.width, gluing_.height);
         add_pulls(system, image, pulls_from_reference(image, density, seed));
         add_pulls(system, image, pulls_from_image(image, density, seed + 1));
         add_membrane(system, lambda);
         add_boundary(system);
         const Solution solution = solve(system.matrix, system.right, gluing_, fixed_, {});
-        take_step(image, solution.values, guarded);
+        take_step(solution.values, guarded);
         for (size_t f = 0; f < face_hint_.size(); ++f) face_hint_[f] = nearest_reference_face_[f];
     }
 
   private:
     // Cells with a face that looks, at its centre, away from the reference or nearly so.
     std::vector<uint32_t> steep_cells(const ImageSurface& image) {
-        std::vector<uint8_t> is_steep(image.normals.size() / 2);
-        parallel_blocks(is_steep.size(), 1024, 0, [&](size_t, size_t begin, size_t end) {
-            for (size_t f = 2 * begin; f < 2 * end; ++f) {
+        std::vector<uint8_t> is_steep(image.normals.size());
+        parallel_blocks(is_steep.size(), 2048, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t f = begin; f < end; ++f) {
                 const Triangle& t = image.mesh.triangles[f];
                 if (touches(t, held_)) continue;
-                const auto cosine = [&] { return front_ * image.normals[f].dot(reference_.normals[face_hint_[f]]); };
-                if (face_hint_[f] != kNone && cosine() > kUnsuspicious) continue;
-                face_hint_[f] = reference_.tree.find((x_[t[0]] + x_[t[1]] + x_[t[2]]) / 3, face_hint_[f]).triangle;
-                if (cosine() < kUnfolded) is_steep[f / 2] = 1;
+                uint32_t& hint = face_hint_[image.slot[f]];
+                const auto cosine = [&] { return front_ * image.normals[f].dot(reference_.normals[hint]); };
+                if (hint != kNone && cosine() > kUnsuspicious) continue;
+                hint = reference_.tree.find((x_[t[0]] + x_[t[1]] + x_[t[2]]) / 3, hint).triangle;
+                if (cosine() < kUnfolded) is_steep[f] = 1;
             }
         });
         std::vector<uint32_t> steep;
-        for (uint32_t cell = 0; cell < is_steep.size(); ++cell) {
-            if (is_steep[cell]) steep.push_back(cell);
+        for (size_t f = 0; f < is_steep.size(); ++f) {
+            const uint32_t cell = image.slot[f] / 2;
+            if (is_steep[f] && (steep.empty() || steep.back() != cell)) steep.push_back(cell);
         }
         return steep;
     }
@@ -394,12 +406,14 @@ class Fitter {
     // The corners of cells and of the cells next to them, one sample of each class, ascending; without those that may
     // not slide.
     std::vector<uint32_t> samples_around(const std::vector<uint32_t>& cells) const {
+        const uint32_t width = gluing_.width;
         std::vector<bool> inside(x_.size(), false);
         for (const uint32_t cell : cells) {
-            const uint32_t row = cell / (side_ - 1), column = cell % (side_ - 1);
-            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 2, side_ - 1); ++r) {
-                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 2, side_ - 1); ++c)
-                    inside[gluing_.representative[r * side_ + c]] = true;
+            const uint32_t row = cell / (width - 1), column = cell % (width - 1);
+            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 2, gluing_.height - 1); ++r) {
+                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column + 2, width - 1); ++c) {
+                    if (gluing_.is_defined(r * width + c)) inside[gluing_.representative[r * width + c]] = true;
+                }
             }
         }
         std::vector<uint32_t> samples;
@@ -430,11 +444,10 @@ class Fitter {
                     count += 1;
                 };
                 for (const uint32_t u : class_around(v)) {
-                    const uint32_t row = u / side_, column = u % side_;
-                    if (row > 0) add(u - side_);
-                    if (row + 1 < side_) add(u + side_);
-                    if (column > 0) add(u - 1);
-                    if (column + 1 < side_) add(u + 1);
+                    if (gluing_.edges[u] & GridGluing::kNorth) add(u - gluing_.width);
+                    if (gluing_.edges[u] & GridGluing::kSouth) add(u + gluing_.width);
+                    if (gluing_.edges[u] & GridGluing::kWest) add(u - 1);
+                    if (gluing_.edges[u] & GridGluing::kEast) add(u + 1);
                 }
                 hint = reference_.tree.find(x_[v], hint).triangle;
                 const Vec3& normal = reference_.normals[hint];
@@ -470,9 +483,7 @@ class Fitter {
                 vertex_normal_[v] = normal;
             }
         }
-        double total = 0;
-        for (const double area : image.areas) total += area;
-        mean_area_ = total / static_cast<double>(x_.size());
+        mean_area_ = image.area() / samples_;
         for (Vec3& normal : vertex_normal_) normal = direction_or(normal, Vec3::Zero());
     }
 
@@ -500,13 +511,13 @@ class Fitter {
     // At least one sample in every face, so that each learns which way the reference looks there.
     std::vector<Pull> pulls_from_image(const ImageSurface& image, double density, uint64_t seed) {
         const auto per_face = static_cast<size_t>(std::max(1.0, std::round(0.5 * density)));
-        nearest_reference_face_.assign(image.areas.size(), kNone);
+        nearest_reference_face_.assign(face_hint_.size(), kNone);
         std::vector<Pull> pulls(per_face * image.areas.size());
         parallel_blocks(image.areas.size(), 2048, 0, [&](size_t, size_t begin, size_t end) {
             for (size_t f = begin; f < end; ++f) {
                 const Triangle& t = image.mesh.triangles[f];
                 if (touches(t, held_)) continue;
-                uint32_t hint = face_hint_[f];
+                uint32_t hint = face_hint_[image.slot[f]];
                 for (size_t k = 0; k < per_face; ++k) {
                     Pull& pull = pulls[per_face * f + k];
                     const uint64_t bits = mix_bits(mix_bits(seed) + per_face * f + k);
@@ -519,7 +530,7 @@ class Fitter {
                     const Vec3 point = (1 - v - w) * x_[t[0]] + v * x_[t[1]] + w * x_[t[2]];
                     const ClosestPoint at = reference_.tree.find(point, hint);
                     hint = at.triangle;
-                    if (k == 0) nearest_reference_face_[f] = at.triangle;
+                    if (k == 0) nearest_reference_face_[image.slot[f]] = at.triangle;
                     pull.face = static_cast<uint32_t>(f);
                     pull.weights = {1 - v - w, v, w};
                     pull.residual = at.point - point;
@@ -533,13 +544,13 @@ class Fitter {
     }
 
     void add_membrane(System& system, double lambda) const {
-        for_cell_rows(side_, [&](uint32_t row) {
-            for (uint32_t column = 0; column < side_; ++column) {
-                const uint32_t i = row * side_ + column;
+        const uint32_t width = gluing_.width;
+        for_cell_rows(gluing_.height, [&](uint32_t row) {
+            for (uint32_t i = row * width; i < (row + 1) * width; ++i) {
                 system.add_anchor(i, kDamping * vertex_area_[i] / mean_area_ * Eigen::Matrix3d::Identity(),
                                   Vec3::Zero());
-                if (column + 1 < side_) add_membrane_edge(system, lambda, i, i + 1);
-                if (row + 1 < side_) add_membrane_edge(system, lambda, i, i + side_);
+                if (gluing_.edges[i] & GridGluing::kEast) add_membrane_edge(system, lambda, i, i + 1);
+                if (gluing_.edges[i] & GridGluing::kSouth) add_membrane_edge(system, lambda, i, i + width);
             }
         });
     }
@@ -568,16 +579,18 @@ class Fitter {
     }
 
     // Goes as far as no sample moves more than half its spacing and, if guarded, no steep cell gets steeper.
-    void take_step(const ImageSurface& image, const std::vector<Vec3>& step, bool guarded) {
+    void take_step(const std::vector<Vec3>& step, bool guarded) {
         std::vector<double> factor(x_.size(), 1.0);
         for (size_t v = 0; v < x_.size(); ++v) {
             const double limit = 0.5 * std::sqrt(vertex_area_[v]), length = step[v].norm();
             if (length > limit) factor[v] = limit / length;
         }
         std::vector<Vec3> target(x_.size());
-        std::vector<uint32_t> moving(x_.size()), cells(image.areas.size() / 2);
+        std::vector<uint32_t> moving(x_.size()), cells;
         std::iota(moving.begin(), moving.end(), 0u);
-        std::iota(cells.begin(), cells.end(), 0u);
+        for (uint32_t cell = 0; cell < gluing_.kind.size(); ++cell) {
+            if (gluing_.kind[cell] != CellKind::kEmpty) cells.push_back(cell);
+        }
         for (int halving = 0; halving < kMostHalvings + kMostFreezings; ++halving) {
             parallel_blocks(moving.size(), 4096, 0, [&](size_t, size_t begin, size_t end) {
                 for (size_t k = begin; k < end; ++k) {
@@ -586,12 +599,12 @@ class Fitter {
                 }
             });
             if (!guarded) break;
-            const std::vector<uint32_t> bad = cells_that_turn_away(image, target, cells);
+            const std::vector<uint32_t> bad = cells_that_turn_away(target, cells);
             if (bad.empty()) break;
             moving.clear();
             std::vector<bool> shortened(x_.size(), false);
             for (const uint32_t cell : bad) {
-                for (const uint32_t corner : corners_of(cell)) {
+                for (const uint32_t corner : gluing_.corners(cell)) {
                     const auto shorten = [&](uint32_t v) {
                         if (shortened[v]) return;
                         shortened[v] = true;
@@ -610,19 +623,14 @@ class Fitter {
         x_ = std::move(target);
     }
 
-    std::array<uint32_t, 4> corners_of(uint32_t cell) const {
-        const uint32_t a = cell / (side_ - 1) * side_ + cell % (side_ - 1);
-        return {a, a + 1, a + side_, a + side_ + 1};
-    }
-
     std::vector<uint32_t> cells_around(const std::vector<uint32_t>& samples) const {
-        const uint32_t last = side_ - 1;
+        const uint32_t width = gluing_.width, last_row = gluing_.height - 2, last_column = width - 2;
         std::vector<uint32_t> cells;
         for (const uint32_t v : samples) {
-            const uint32_t row = v / side_, column = v % side_;
-            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, last - 1); ++r) {
-                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, last - 1); ++c)
-                    cells.push_back(r * last + c);
+            const uint32_t row = v / width, column = v % width;
+            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, last_row); ++r) {
+                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, last_column); ++c)
+                    cells.push_back(r * (width - 1) + c);
             }
         }
         std::sort(cells.begin(), cells.end());
@@ -631,16 +639,16 @@ class Fitter {
     }
 
     // Of the given cells, in order, those that would be steep and steeper than now, split as they would then be split.
-    std::vector<uint32_t> cells_that_turn_away(const ImageSurface& image, const std::vector<Vec3>& target,
+    std::vector<uint32_t> cells_that_turn_away(const std::vector<Vec3>& target,
                                                const std::vector<uint32_t>& cells) const {
         std::vector<uint8_t> bad(cells.size());
         parallel_blocks(cells.size(), 2048, 0, [&](size_t, size_t begin, size_t end) {
             for (size_t k = begin; k < end; ++k) {
-                const size_t cell = cells[k];
-                const std::array<Triangle, 2> now = {image.mesh.triangles[2 * cell],
-                                                     image.mesh.triangles[2 * cell + 1]};
-                if (touches(now[0], held_) || touches(now[1], held_)) continue;
-                const double then = facing(target, split_cell(target, side_, gluing_, cells[k]), cell);
+                const uint32_t cell = cells[k];
+                const std::array<Triangle, 2> now = split_cell(x_, gluing_, cell);
+                const auto is_held = [&](const Triangle& t) { return t != kNoFace && touches(t, held_); };
+                if (is_held(now[0]) || is_held(now[1])) continue;
+                const double then = facing(target, split_cell(target, gluing_, cell), cell);
                 bad[k] = then < kSteepest && then < facing(x_, now, cell) ? 1 : 0;
             }
         });
@@ -653,14 +661,15 @@ class Fitter {
 
     // The smaller cosine between the faces of a cell and the reference at their centres. The reference's face that was
     // near the cell at the beginning of the round tells when there is no need to look.
-    double facing(const std::vector<Vec3>& positions, const std::array<Triangle, 2>& faces, size_t cell) const {
+    double facing(const std::vector<Vec3>& positions, const std::array<Triangle, 2>& faces, uint32_t cell) const {
         double least = 1;
         for (size_t half = 0; half < 2; ++half) {
             const Triangle& t = faces[half];
+            if (t == kNoFace) continue;
             const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
             const Vec3 normal = front_ * direction_or((b - a).cross(c - a), Vec3::Zero());
-            const uint32_t known = nearest_reference_face_[2 * cell + half];
-            double cosine = normal.dot(reference_.normals[known]);
+            const uint32_t known = nearest_reference_face_[2 * size_t{cell} + half];
+            double cosine = known == kNone ? -1 : normal.dot(reference_.normals[known]);
             if (cosine < kUnsuspicious) {
                 cosine = normal.dot(reference_.normals[reference_.tree.find((a + b + c) / 3, known).triangle]);
             }
@@ -669,14 +678,14 @@ class Fitter {
         return least;
     }
 
-    uint32_t side_;
-    const RingGluing& gluing_;
+    const GridGluing& gluing_;
     const Reference& reference_;
     std::vector<Vec3> x_;
     std::vector<bool> held_, fixed_;
     std::vector<uint32_t> on_boundary_;
     bool has_curve_ = false;
     double front_ = 1;
+    double samples_ = 0;  // defined ones
 
     // Of the round.
     std::vector<double> vertex_area_;
@@ -685,14 +694,15 @@ class Fitter {
     std::vector<uint32_t> nearest_reference_face_, face_hint_;
 };
 
-std::optional<Error> check_input(const GeometryImage& start, const Mesh& reference, const std::vector<bool>& held) {
+std::optional<Error> check_input(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
+                                 const std::vector<bool>& held) {
     const auto fail = [](const char* message) { return Error{Stage::kFit, message}; };
-    if (start.side < 3 || start.positions.size() != size_t{start.side} * start.side)
-        return fail("the image is not a square of samples");
+    if (gluing.width < 3 || gluing.height < 3 || start.size() != gluing.sample_count())
+        return fail("the image is not a rectangle of samples");
     if (reference.triangles.empty()) return fail("the mesh to fit to has no triangles");
-    if (!held.empty() && held.size() != start.positions.size())
+    if (!held.empty() && held.size() != start.size())
         return fail("the mask of held samples has another size than the image");
-    for (const Vec3& p : start.positions) {
+    for (const Vec3& p : start) {
         if (!p.allFinite()) return fail("the image has samples that are not finite");
     }
     return std::nullopt;
@@ -707,7 +717,7 @@ double distance(const FitQuality& quality) { return std::max(quality.to_image, q
 
 // The part of the surface within a mean sample spacing of edges sharper than 60 degrees: much of it on machined parts,
 // hardly any on scans.
-double crease_share(const Reference& reference, size_t samples) {
+double crease_share(const Reference& reference, double samples) {
     const std::vector<Triangle>& triangles = reference.mesh.triangles;
     const EdgeTable edges = build_edge_table(triangles, reference.mesh.positions.size());
     double area = 0, sharp = 0;
@@ -720,7 +730,7 @@ double crease_share(const Reference& reference, size_t samples) {
                   reference.mesh.positions[from(reference.mesh, around[0])])
                      .norm();
     }
-    return area > 0 ? 2 * sharp / std::sqrt(area * static_cast<double>(samples)) : 0;
+    return area > 0 ? 2 * sharp / std::sqrt(area * samples) : 0;
 }
 
 // What the first rounds do besides.
@@ -741,9 +751,8 @@ void run_schedule(Fitter& fitter, const Schedule& schedule, const Plan& plan, ui
     }
 }
 
-Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const FitOptions& options,
-                            const Progress& progress) {
-    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& input,
+                    const FitOptions& options, const Progress& progress) {
     const Frame frame(input);
     const Reference reference(Mesh{frame.into(input.positions), input.triangles});
     const Fitter untouched(start, reference, gluing, frame, options);
@@ -755,10 +764,11 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
     if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
     // Samples that are relaxed along the surface leave its creases, and not all of them find back. Where that may matter,
     // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
-    const bool compare = before.folds > 0 && (options.strength == FitOptions::Strength::kLoose ||
-                                              crease_share(reference, start.positions.size()) > kCreased);
+    const bool compare =
+        before.folds > 0 && (options.strength == FitOptions::Strength::kLoose ||
+                             crease_share(reference, static_cast<double>(gluing.defined_count())) > kCreased);
     Fitted result;
-    result.image = start;
+    result.positions = start;
     FitQuality after = before;
     for (size_t k = 0; k < plans.size(); ++k) {
         Fitter fitter = untouched;
@@ -769,8 +779,8 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
         if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
             break;  // the unfolded one is better
         after = reached;
-        for (size_t v = 0; v < start.positions.size(); ++v) {
-            if (!fitter.held()[v]) result.image.positions[v] = frame.out_of(fitter.positions()[v]);
+        for (uint32_t v = 0; v < start.size(); ++v) {
+            if (gluing.is_defined(v) && !fitter.held()[v]) result.positions[v] = frame.out_of(fitter.positions()[v]);
         }
         const bool compare_with_next = compare && k == 0 && !result.improved;
         result.improved = true;
@@ -789,30 +799,40 @@ Result<Fitted> fit_in_arena(const GeometryImage& start, const Mesh& input, const
 
 }  // namespace
 
-Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
-                   const Progress& progress) {
-    if (auto bad = check_input(start, reference, options.held)) return *std::move(bad);
-    std::optional<Result<Fitted>> result;
-    with_threads(options.threads, [&] { result.emplace(fit_in_arena(start, reference, options, progress)); });
-    return *std::move(result);
+Result<Fitted> fit(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
+                   const FitOptions& options, const Progress& progress) {
+    if (auto bad = check_input(start, gluing, reference, options.held)) return *std::move(bad);
+    Fitted result;
+    with_threads(options.threads, [&] { result = fit_in_arena(start, gluing, reference, options, progress); });
+    return result;
 }
 
-Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held,
-                               uint32_t threads) {
-    if (auto bad = check_input(image, reference, held)) return *std::move(bad);
-    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
+Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
+                   const Progress& progress) {
+    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+    return fit(start.positions, gluing, reference, options, progress);
+}
+
+Result<FitQuality> measure_fit(const std::vector<Vec3>& positions, const GridGluing& gluing, const Mesh& reference,
+                               const std::vector<bool>& held, uint32_t threads) {
+    if (auto bad = check_input(positions, gluing, reference, held)) return *std::move(bad);
     FitQuality quality;
     with_threads(threads, [&] {
         const Frame frame(reference);
         const Reference scaled(Mesh{frame.into(reference.positions), reference.triangles});
-        const std::vector<Vec3> positions = frame.into(image.positions);
-        quality = measure(positions, image.side, gluing, scaled,
-                          held.empty() ? std::vector<bool>(positions.size(), false) : held,
-                          front_side(positions, image.side, gluing, scaled));
+        const std::vector<Vec3> points = frame.into(positions);
+        quality = measure(points, gluing, scaled, held.empty() ? std::vector<bool>(points.size(), false) : held,
+                          front_side(points, gluing, scaled));
         quality.to_image /= frame.scale;
         quality.to_reference /= frame.scale;
     });
     return quality;
+}
+
+Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held,
+                               uint32_t threads) {
+    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
+    return measure_fit(image.positions, gluing, reference, held, threads);
 }
 
 }  // namespace gim

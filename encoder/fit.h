@@ -1,5 +1,5 @@
-// Fits the samples of a geometry image to the surface that they were taken from: the image's triangles come as near to
-// it as their number allows.
+// Fits the samples of an image, of either layout, to the surface that they were taken from: the image's triangles come
+// as near to it as their number allows.
 //
 // After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.6 (geometry-image
 // optimization), whose point-to-point springs we replace: both surfaces are sampled, the distances count nearly only
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "encoder/geometry_image.h"
+#include "encoder/grid_surface.h"
 #include "encoder/mesh.h"
 #include "gim/encoder.h"
 
@@ -40,24 +41,26 @@ struct FitQuality {
 };
 
 struct Fitted {
-    GeometryImage image;
+    std::vector<Vec3> positions;  // of all samples; those of the start where undefined
     FitQuality before, after;
     uint32_t rounds = 0;
-    bool improved = false;  // false: the image is the start, unchanged
+    bool improved = false;  // false: the positions are the start's
 };
 
-// In:  an image whose glued samples are at (nearly) equal positions, and the oriented surface it was sampled from.
-// Samples on
-//      input boundaries (paths without a mate) stay on the reference's boundary curve.
-// Out: an image that is nowhere cracked, no worse than the start in either one-way distance, and with no more folds; or
-// the
-//      start itself where the fit did not manage that.
+// In:  samples that are at (nearly) equal positions where they are glued, and the oriented surface they were taken from.
+//      Samples on input boundaries stay on the reference's boundary curve.
+// Out: samples whose surface is nowhere cracked, no worse than the start in either one-way distance, and with no more
+//      folds; or the start itself where the fit did not manage that.
 // Cost: O(samples + reference) a round; 257 x 257 loose: some seconds on two cores. The same result for any thread
 // count.
+Result<Fitted> fit(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
+                   const FitOptions& options, const Progress& progress = {});
 Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
                    const Progress& progress = {});
 
 // How far an image is from a surface, and how often it folds over.
+Result<FitQuality> measure_fit(const std::vector<Vec3>& positions, const GridGluing& gluing, const Mesh& reference,
+                               const std::vector<bool>& held = {}, uint32_t threads = 0);
 Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held = {},
                                uint32_t threads = 0);
 

@@ -79,6 +79,18 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
         result.packing = std::move(packing);
         break;
     }
+    if (options.fit) {
+        clock.begin(Stage::kFit);
+        FitOptions fit_options;
+        fit_options.strength = *options.fit;
+        fit_options.seed = options.seed;
+        fit_options.threads = options.threads;
+        GIM_TRY(gluing, glue_charts(result.image.mask, result.image.seams));
+        GIM_TRY(fitted, fit(result.image.positions, gluing, mesh, fit_options, clock.progress()));
+        result.image.positions = std::move(fitted.positions);
+        result.before_fit = fitted.before;
+        result.after_fit = fitted.after;
+    }
     GIM_TRY(surface, reconstruct(result.image));
     const TopologySummary found = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size()).summary;
     if (!same_topology(wanted, found))

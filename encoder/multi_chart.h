@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "encoder/chart_images.h"
+#include "encoder/fit.h"
 #include "encoder/mesh.h"
 #include "encoder/multi_chart_image.h"
 #include "encoder/stage_clock.h"
@@ -16,6 +18,7 @@ struct MultiChartOptions {
     uint32_t charts = 25;       // asked for; more come out where topology or flattening needs them
     uint32_t samples = 66049;   // bound on width * height
     uint32_t pack_effort = 30;  // more rounds of search pack more tightly; time grows with them
+    std::optional<FitOptions::Strength> fit = FitOptions::Strength::kLoose;  // nothing: samples stay as taken
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the result does not depend on it
 };
@@ -27,6 +30,7 @@ struct MultiChart {
     TopologySummary topology;  // of the mesh
     double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1
     uint32_t packings = 1;                                  // how many it took to get one whose seams close
+    FitQuality before_fit, after_fit;                       // the same, and not measured, without a fit
 };
 
 // In:  a clean mesh, of any number of components and boundaries. Out: an image whose reconstruction is a manifold with

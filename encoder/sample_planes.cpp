@@ -92,9 +92,9 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, uint32_t threads) {
 // The image as a surface: points and outside directions at real grid coordinates.
 class GridSurface {
   public:
-    GridSurface(const GeometryImage& image, RingGluing gluing) : image_(image), gluing_(std::move(gluing)) {
+    GridSurface(const GeometryImage& image, GridGluing gluing) : image_(image), gluing_(std::move(gluing)) {
         outside_.assign(image.positions.size(), Vec3::Zero());
-        for (const Triangle& t : triangulate_grid(image.positions, image.side, gluing_)) {
+        for (const Triangle& t : triangulate_grid(image.positions, gluing_).triangles) {
             const Vec3& a = image.positions[t[0]];
             const Vec3 n = (image.positions[t[1]] - a).cross(image.positions[t[2]] - a);
             for (const uint32_t v : t) outside_[gluing_.representative[v]] += n;
@@ -110,7 +110,7 @@ class GridSurface {
     Point at(double row, double column) const {
         const CellPoint place = locate_in_cell(image_.side, row, column);
         const auto& [a, b, c, d] = place.corners;
-        const bool main = split_cell(image_.positions, image_.side, gluing_, place.cell)[0][2] == d;
+        const bool main = split_cell(image_.positions, gluing_, place.cell)[0][2] == d;
         const std::array<double, 4> w = place.weights(main);
         Point p{Vec3::Zero(), Vec3::Zero(), 0};
         for (size_t i = 0; i < 4; ++i) {
@@ -125,7 +125,7 @@ class GridSurface {
 
   private:
     const GeometryImage& image_;
-    RingGluing gluing_;
+    GridGluing gluing_;
     std::vector<Vec3> outside_;
 };
 

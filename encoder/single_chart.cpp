@@ -101,7 +101,7 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     fit_options.seed = options.seed;
     fit_options.threads = options.threads;
     GIM_TRY(fitted, fit(chart.image, mesh, fit_options, clock.progress()));
-    chart.image = std::move(fitted.image);
+    chart.image.positions = std::move(fitted.positions);
     chart.folds = fitted.after.folds;
     chart.folds_before_fit = fitted.before.folds;
     if (observer) observer(make_snapshot("image-fitted", "fitted", chart.image));

@@ -32,7 +32,7 @@ Snapshot make_snapshot(std::string name, std::string caption, const GeometryImag
     Snapshot state{std::move(name), std::move(caption), {}, {}, {}};
     const uint32_t side = image.side, ring = ring_length(side);
     if (const auto gluing = glue_ring(image.sideband, side); gluing.ok())
-        state.mesh = to_triangle_mesh(image.positions, triangulate_grid(image.positions, side, gluing.value()));
+        state.mesh = to_triangle_mesh(image.positions, triangulate_grid(image.positions, gluing.value()).triangles);
     const auto sample = [&](uint32_t k) {
         const GridPoint p = ring_point(side, k % ring);
         return p.row * side + p.column;

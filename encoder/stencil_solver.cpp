@@ -23,8 +23,12 @@ Planes make_planes(size_t count) {
 
 class Solver {
   public:
-    Solver(const StencilMatrix& matrix, const RingGluing& gluing, const std::vector<bool>& fixed)
-        : matrix_(matrix), gluing_(gluing), side_(matrix.side()), count_(size_t{side_} * side_) {
+    Solver(const StencilMatrix& matrix, const GridGluing& gluing, const std::vector<bool>& fixed)
+        : matrix_(matrix),
+          gluing_(gluing),
+          width_(matrix.width()),
+          height_(matrix.height()),
+          count_(size_t{width_} * height_) {
         counted_.assign(count_, 1.0f);
         free_.assign(count_, 1.0f);
         for (const auto& members : gluing.shared) {
@@ -34,7 +38,7 @@ class Solver {
             for (const uint32_t v : members) free_[v] = any_fixed ? 0.0f : 1.0f;
         }
         for (size_t v = 0; v < count_; ++v) {
-            if (fixed[v]) free_[v] = 0;
+            if (fixed[v] || !gluing.is_defined(static_cast<uint32_t>(v))) free_[v] = 0;
         }
         build_preconditioner();
     }
@@ -90,15 +94,15 @@ class Solver {
     // Blocks of whole rows, as ranges of samples.
     template <class Body>
     void for_rows(const Body& body) const {
-        parallel_blocks(side_, kRowsPerBlock, 0,
-                        [&](size_t, size_t begin, size_t end) { body(begin * side_, end * side_); });
+        parallel_blocks(height_, kRowsPerBlock, 0,
+                        [&](size_t, size_t begin, size_t end) { body(begin * width_, end * width_); });
     }
 
     template <class Term>
     double sum_rows(const Term& term) const {
-        std::vector<double> partial((side_ + kRowsPerBlock - 1) / kRowsPerBlock, 0.0);
-        parallel_blocks(side_, kRowsPerBlock, 0, [&](size_t block, size_t begin, size_t end) {
-            partial[block] = term(begin * side_, end * side_);
+        std::vector<double> partial((height_ + kRowsPerBlock - 1) / kRowsPerBlock, 0.0);
+        parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t block, size_t begin, size_t end) {
+            partial[block] = term(begin * width_, end * width_);
         });
         double total = 0;
         for (const double sum : partial) total += sum;
@@ -157,9 +161,9 @@ class Solver {
 
     // z = M^-1 r, and the two products that the next step needs.
     Dots precondition(const Planes& r, Planes& z) const {
-        std::vector<Dots> partial((side_ + kRowsPerBlock - 1) / kRowsPerBlock);
-        parallel_blocks(side_, kRowsPerBlock, 0, [&](size_t block, size_t first, size_t last) {
-            const size_t begin = first * side_, end = last * side_;
+        std::vector<Dots> partial((height_ + kRowsPerBlock - 1) / kRowsPerBlock);
+        parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t block, size_t first, size_t last) {
+            const size_t begin = first * width_, end = last * width_;
             const float *xx = inverse_[0].data(), *xy = inverse_[1].data(), *xz = inverse_[2].data();
             const float *yy = inverse_[3].data(), *yz = inverse_[4].data(), *zz = inverse_[5].data();
             for (size_t v = begin; v < end; ++v) {
@@ -204,23 +208,23 @@ class Solver {
     // A block between two samples is stored with the first of them; each row gathers from itself and its two
     // neighbours.
     void apply(const Planes& in, Planes& out) const {
-        const auto side = static_cast<ptrdiff_t>(side_);
-        parallel_blocks(side_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {
+        const auto width = static_cast<ptrdiff_t>(width_);
+        parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {
             for (size_t row = first; row < last; ++row) {
-                const size_t begin = row * side_, end = begin + side_;
+                const size_t begin = row * width_, end = begin + width_;
                 for (auto& plane : out) std::fill(plane.begin() + begin, plane.begin() + end, 0.0f);
                 accumulate(StencilMatrix::kDiagonal, begin, end, 0, 0, in, out);
                 accumulate(StencilMatrix::kEast, begin, end - 1, 0, 1, in, out);
                 accumulate(StencilMatrix::kEast, begin + 1, end, -1, -1, in, out);
-                if (row + 1 < side_) {
-                    accumulate(StencilMatrix::kSouth, begin, end, 0, side, in, out);
-                    accumulate(StencilMatrix::kSouthEast, begin, end - 1, 0, side + 1, in, out);
-                    accumulate(StencilMatrix::kSouthWest, begin + 1, end, 0, side - 1, in, out);
+                if (row + 1 < height_) {
+                    accumulate(StencilMatrix::kSouth, begin, end, 0, width, in, out);
+                    accumulate(StencilMatrix::kSouthEast, begin, end - 1, 0, width + 1, in, out);
+                    accumulate(StencilMatrix::kSouthWest, begin + 1, end, 0, width - 1, in, out);
                 }
                 if (row > 0) {
-                    accumulate(StencilMatrix::kSouth, begin, end, -side, -side, in, out);
-                    accumulate(StencilMatrix::kSouthEast, begin + 1, end, -side - 1, -side - 1, in, out);
-                    accumulate(StencilMatrix::kSouthWest, begin, end - 1, -side + 1, -side + 1, in, out);
+                    accumulate(StencilMatrix::kSouth, begin, end, -width, -width, in, out);
+                    accumulate(StencilMatrix::kSouthEast, begin + 1, end, -width - 1, -width - 1, in, out);
+                    accumulate(StencilMatrix::kSouthWest, begin, end - 1, -width + 1, -width + 1, in, out);
                 }
             }
         });
@@ -233,8 +237,8 @@ class Solver {
     }
 
     const StencilMatrix& matrix_;
-    const RingGluing& gluing_;
-    uint32_t side_;
+    const GridGluing& gluing_;
+    uint32_t width_, height_;
     size_t count_;
     std::vector<float> counted_;  // 1 for one sample of each class
     std::vector<float> free_;     // 0 for fixed samples
@@ -243,7 +247,7 @@ class Solver {
 
 }  // namespace
 
-Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const RingGluing& gluing,
+Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const GridGluing& gluing,
                const std::vector<bool>& fixed, const SolverOptions& options) {
     return Solver(matrix, gluing, fixed).run(right, options);
 }

@@ -1,5 +1,5 @@
-// Symmetric positive definite systems on a square grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
-// the eight neighbours, some ring samples glued into one unknown. Solved by conjugate gradients with a 3 x 3 block
+// Symmetric positive definite systems on a grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
+// the eight neighbours, some samples glued into one unknown. Solved by conjugate gradients with a 3 x 3 block
 // Jacobi preconditioner; in floats, plane after plane, so that the loops over a row vectorise.
 #pragma once
 
@@ -17,23 +17,24 @@ using SymmetricBlock = std::array<float, 6>;
 
 class StencilMatrix {
   public:
-    explicit StencilMatrix(uint32_t side) : side_(side) {
+    StencilMatrix(uint32_t width, uint32_t height) : width_(width), height_(height) {
         for (auto& planes : block_) {
-            for (auto& plane : planes) plane.assign(size_t{side} * side, 0.0f);
+            for (auto& plane : planes) plane.assign(size_t{width} * height, 0.0f);
         }
     }
 
-    uint32_t side() const { return side_; }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
 
     // Adds a block between two samples that are neighbours (or one and the same).
     void add(uint32_t i, uint32_t j, const SymmetricBlock& block, float factor) {
         if (i > j) std::swap(i, j);
         const uint32_t offset = j - i;
-        const size_t kind = offset == 0       ? kDiagonal
-                            : offset == 1     ? kEast
-                            : offset == side_ ? kSouth
-                            : offset > side_  ? kSouthEast
-                                              : kSouthWest;
+        const size_t kind = offset == 0        ? kDiagonal
+                            : offset == 1      ? kEast
+                            : offset == width_ ? kSouth
+                            : offset > width_  ? kSouthEast
+                                               : kSouthWest;
         for (size_t k = 0; k < 6; ++k) block_[kind][k][i] += factor * block[k];
     }
 
@@ -41,7 +42,7 @@ class StencilMatrix {
     const float* plane(Kind kind, size_t k) const { return block_[kind][k].data(); }
 
   private:
-    uint32_t side_;
+    uint32_t width_, height_;
     std::array<std::array<std::vector<float>, 6>, kKinds> block_;
 };
 
@@ -56,8 +57,8 @@ struct Solution {
 };
 
 // `right`: per sample; the right side of a glued unknown is the sum over its class. `fixed` samples keep the value
-// zero. The same bits for any number of threads.
-Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const RingGluing& gluing,
+// zero, as do undefined ones. At least three columns. The same bits for any number of threads.
+Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const GridGluing& gluing,
                const std::vector<bool>& fixed, const SolverOptions& options);
 
 }  // namespace gim

@@ -57,16 +57,18 @@ TEST(Fit, ComesNearerBothWays) {
 
 TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
     const Mesh reference = bumpy_torus();
-    const auto result = fit(image_on(reference, 33), reference, {});
+    GeometryImage fitted = image_on(reference, 33);
+    const auto result = fit(fitted, reference, {});
     ASSERT_TRUE(result.ok());
-    const auto quality = measure_fit(result.value().image, reference);
+    fitted.positions = result.value().positions;
+    const auto quality = measure_fit(fitted, reference);
     ASSERT_TRUE(quality.ok());
     EXPECT_NEAR(decibels(quality.value().to_image, result.value().after.to_image), 0, 1e-6);
 
     TriangleMesh image, input;
-    const auto gluing = glue_ring(result.value().image.sideband, 33);
-    for (const Vec3& p : result.value().image.positions) image.positions.push_back({p[0], p[1], p[2]});
-    image.triangles = triangulate_grid(result.value().image.positions, 33, gluing.value());
+    const auto gluing = glue_ring(torus_image(33, 0.7, 0.3).sideband, 33);
+    for (const Vec3& p : result.value().positions) image.positions.push_back({p[0], p[1], p[2]});
+    image.triangles = triangulate_grid(result.value().positions, gluing.value()).triangles;
     for (const Vec3& p : reference.positions) input.positions.push_back({p[0], p[1], p[2]});
     input.triangles = reference.triangles;
     const auto comparison = compare(input, image, {});
@@ -80,9 +82,9 @@ TEST(Fit, SeamsStayClosed) {
     const auto result = fit(image_on(reference, 33), reference, {});
     ASSERT_TRUE(result.ok());
     ASSERT_TRUE(result.value().improved);
-    const auto gluing = glue_ring(result.value().image.sideband, 33);
-    for (size_t v = 0; v < result.value().image.positions.size(); ++v) {
-        EXPECT_EQ(result.value().image.positions[v], result.value().image.positions[gluing.value().representative[v]]);
+    const auto gluing = glue_ring(torus_image(33, 0.7, 0.3).sideband, 33);
+    for (size_t v = 0; v < result.value().positions.size(); ++v) {
+        EXPECT_EQ(result.value().positions[v], result.value().positions[gluing.value().representative[v]]);
     }
 }
 
@@ -93,8 +95,8 @@ TEST(Fit, ThreadsAndRepetitionChangeNothing) {
                two = fit(start, reference, {.rounds = 4, .threads = 2});
     ASSERT_TRUE(one.ok() && two.ok());
     EXPECT_TRUE(one.value().improved);
-    EXPECT_EQ(one.value().image.positions, two.value().image.positions);
-    EXPECT_NE(one.value().image.positions, fit(start, reference, {.rounds = 4, .seed = 2}).value().image.positions);
+    EXPECT_EQ(one.value().positions, two.value().positions);
+    EXPECT_NE(one.value().positions, fit(start, reference, {.rounds = 4, .seed = 2}).value().positions);
 }
 
 TEST(Fit, SideOfTheImageDoesNotMatter) {
@@ -117,8 +119,8 @@ TEST(Fit, BoundarySamplesStayOnTheBoundaryCurve) {
     ASSERT_TRUE(result.ok()) << result.error().message;
     ASSERT_TRUE(result.value().improved);
     for (uint32_t k = 0; k < 33; ++k) {
-        for (const Vec3& p : {result.value().image.at(0, k), result.value().image.at(k, 32),
-                              result.value().image.at(32, k), result.value().image.at(k, 0)}) {
+        for (const uint32_t v : {k, k * 33 + 32, 32 * 33 + k, k * 33}) {
+            const Vec3& p = result.value().positions[v];
             EXPECT_NEAR(std::max(std::abs(p[0]), std::abs(p[1])), 1, 1e-9);
         }
     }
@@ -158,7 +160,7 @@ TEST(Fit, AnImageThatCannotBeBetteredComesBackUnchanged) {
     const auto result = fit(start, square, {});
     ASSERT_TRUE(result.ok());
     if (!result.value().improved) {
-        EXPECT_EQ(result.value().image.positions, start.positions);
+        EXPECT_EQ(result.value().positions, start.positions);
     }
     EXPECT_LE(result.value().after.to_image, result.value().before.to_image);
     EXPECT_LE(result.value().after.to_reference, result.value().before.to_reference);
@@ -175,11 +177,75 @@ TEST(Fit, HeldSamplesDoNotMove) {
     size_t moved = 0;
     for (size_t v = 0; v < held.size(); ++v) {
         if (held[v]) {
-            EXPECT_EQ(result.value().image.positions[v], start.positions[v]);
+            EXPECT_EQ(result.value().positions[v], start.positions[v]);
         }
-        moved += result.value().image.positions[v] != start.positions[v] ? 1 : 0;
+        moved += result.value().positions[v] != start.positions[v] ? 1 : 0;
     }
     EXPECT_GT(moved, 800u);
+}
+
+// A bumpy sphere, and samples of a round one: the fit has to find the bumps.
+Mesh bumpy_sphere() { return mesh_of(corpus::roughened(corpus::sphere(20), 0.01, 4)); }
+
+TEST(Fit, ChartsComeNearerAndStayGlued) {
+    const Mesh reference = bumpy_sphere();
+    const MultiChartImage image = sphere_charts(33);
+    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
+    for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
+        const auto result = fit(image.positions, gluing, reference, {.strength = strength});
+        ASSERT_TRUE(result.ok()) << result.error().message;
+        const Fitted& fitted = result.value();
+        ASSERT_TRUE(fitted.improved);
+        EXPECT_GT(decibels(fitted.after.to_image, fitted.before.to_image), 3);
+        EXPECT_GT(decibels(fitted.after.to_reference, fitted.before.to_reference), 3);
+        EXPECT_LE(fitted.after.folds, fitted.before.folds);
+        size_t moved_on_seams = 0;
+        for (uint32_t v = 0; v < gluing.sample_count(); ++v) {
+            if (!gluing.is_defined(v)) {
+                EXPECT_EQ(fitted.positions[v], image.positions[v]);
+                continue;
+            }
+            EXPECT_EQ(fitted.positions[v], fitted.positions[gluing.representative[v]]);
+            moved_on_seams += gluing.class_of[v] != kNone && fitted.positions[v] != image.positions[v];
+        }
+        EXPECT_GT(moved_on_seams, 200u);
+    }
+}
+
+TEST(Fit, ChartsDoNotDependOnThreads) {
+    const Mesh reference = bumpy_sphere();
+    const MultiChartImage image = sphere_charts(33);
+    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
+    const auto one = fit(image.positions, gluing, reference, {.rounds = 4, .threads = 1}),
+               two = fit(image.positions, gluing, reference, {.rounds = 4, .threads = 2});
+    ASSERT_TRUE(one.ok() && two.ok());
+    EXPECT_TRUE(one.value().improved);
+    EXPECT_EQ(one.value().positions, two.value().positions);
+}
+
+TEST(Fit, BordersOfChartsOnTheInputBoundaryStayThere) {
+    const Mesh reference = creased_sheet();
+    MultiChartImage image;
+    image.mask = {40, 33, {}};
+    const GeometryImage sheet = sheet_image(33);
+    for (uint32_t row = 0; row < 33; ++row) {
+        for (uint32_t column = 0; column < 40; ++column) {
+            image.mask.defined.push_back(column < 33);
+            image.positions.push_back(column < 33 ? sheet.at(row, column) : Vec3(Vec3::Zero()));
+        }
+    }
+    image.seams.loops = {{0, 1}};
+    image.seams.paths = {{kNone, 128}};
+    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
+    const auto result = fit(image.positions, gluing, reference, {});
+    ASSERT_TRUE(result.ok());
+    ASSERT_TRUE(result.value().improved);
+    for (uint32_t k = 0; k < 33; ++k) {
+        for (const uint32_t v : {k, k * 40 + 32, 32 * 40 + k, k * 40}) {
+            const Vec3& p = result.value().positions[v];
+            EXPECT_NEAR(std::max(std::abs(p[0]), std::abs(p[1])), 1, 1e-9);
+        }
+    }
 }
 
 TEST(Fit, ProgressRisesToOne) {

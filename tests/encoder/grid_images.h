@@ -1,12 +1,14 @@
 // Small geometry images with known gluing, for the tests of the stages after sampling.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "encoder/geometry_image.h"
 #include "encoder/mesh.h"
+#include "encoder/multi_chart_image.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -45,6 +47,40 @@ inline GeometryImage torus_image(uint32_t side, double radius, double tube_radiu
         image.at(k, side - 1) = image.at(k, 0);
     }
     image.at(side - 1, side - 1) = image.at(0, 0);
+    return image;
+}
+
+// A sphere of radius 1 as two charts of side x side samples, a column apart, zipped all around. The first lacks its lower
+// left corner, which makes a cell of three; and its second sample is the same surface point as its first.
+inline MultiChartImage sphere_charts(uint32_t side) {
+    MultiChartImage image;
+    const uint32_t width = 2 * side + 1, length = 2 * (side - 1);
+    image.mask = {width, side, std::vector<uint8_t>(size_t{width} * side, 1)};
+    for (uint32_t row = 0; row < side; ++row) {
+        image.mask.defined[row * width + side] = 0;
+        for (uint32_t column = 0; column < width; ++column) {
+            // The second chart is the mirror image of the first, on the other side of the sphere.
+            const uint32_t mirrored = std::min(column, width - 1 - column);
+            const double x = 2.0 * mirrored / (side - 1) - 1, y = 2.0 * row / (side - 1) - 1;
+            const double from_pole = 0.5 * std::numbers::pi * std::max(std::abs(x), std::abs(y));
+            const double scale = x != 0 || y != 0 ? std::sin(from_pole) / std::hypot(x, y) : 0;
+            image.positions.emplace_back(scale * x, scale * y, (column < side ? -1 : 1) * std::cos(from_pole));
+        }
+    }
+    image.mask.defined[(side - 1) * width] = 0;
+    image.seams.loops = {{0, 2}, {width - 1, 2}};
+    image.seams.paths = {{3, length}, {2, length - 1}, {1, length}, {0, length}};
+    image.seams.zippers.assign(2, std::vector<ZipStep>(length, ZipStep::kBoth));
+    image.seams.zippers[0].front() = ZipStep::kFirst;
+    image.seams.zippers[0].insert(image.seams.zippers[0].begin() + 1, ZipStep::kSecond);
+    image.seams.zippers[1][length / 2] = ZipStep::kSecond;
+    for (size_t i = 0; i < image.positions.size(); ++i) {
+        if (!image.mask.defined[i]) image.positions[i] = Vec3::Zero();
+    }
+    const auto point = glue_samples(image.mask, image.seams);
+    for (size_t i = 0; i < image.positions.size(); ++i) {
+        if (image.mask.defined[i]) image.positions[i] = image.positions[point.value()[i]];
+    }
     return image;
 }
 

@@ -14,13 +14,15 @@ TopologySummary topology_of(const Mesh& mesh) {
     return analyse_topology(mesh.triangles, mesh.positions.size()).summary;
 }
 
-Result<MultiChart> image_of(const Mesh& mesh, uint32_t charts, uint32_t samples, uint32_t threads = 0) {
+Result<MultiChart> image_of(const Mesh& mesh, uint32_t charts, uint32_t samples, uint32_t threads = 0,
+                            std::optional<FitOptions::Strength> strength = {}) {
     StageClock clock({});
     MultiChartOptions options;
     options.charts = charts;
     options.samples = samples;
     options.pack_effort = 2;
     options.threads = threads;
+    options.fit = strength;
     return make_multi_chart_image(mesh, options, clock);
 }
 
@@ -84,6 +86,24 @@ TEST(MultiChart, ImageDoesNotDependOnThreads) {
     ASSERT_TRUE(one.ok() && three.ok());
     EXPECT_EQ(one.value().image.mask.defined, three.value().image.mask.defined);
     EXPECT_EQ(one.value().image.positions, three.value().image.positions);
+}
+
+TEST(MultiChart, FitBringsTheImageNearerAndKeepsTheSurface) {
+    for (const char* name : {"tori-2", "terrain-3200"}) {
+        const Mesh mesh = surface_named(name);
+        for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
+            const auto sampled = image_of(mesh, 8, 8000), fitted = image_of(mesh, 8, 8000, 0, strength);
+            ASSERT_TRUE(sampled.ok() && fitted.ok()) << name;
+            const MultiChart& chart = fitted.value();
+            EXPECT_EQ(chart.image.mask.defined, sampled.value().image.mask.defined) << name;
+            EXPECT_NE(chart.image.positions, sampled.value().image.positions) << name;
+            EXPECT_LT(chart.after_fit.to_image, chart.before_fit.to_image) << name;
+            EXPECT_LT(chart.after_fit.to_reference, chart.before_fit.to_reference) << name;
+            EXPECT_LE(chart.after_fit.folds, chart.before_fit.folds) << name;
+            expect_same_topology(mesh, chart.image, name);
+            expect_glued_samples_are_equal(chart.image, name);
+        }
+    }
 }
 
 TEST(MultiChart, TooFewSamplesAreRefused) { EXPECT_FALSE(image_of(surface_named("plate-5"), 8, 60).ok()); }

@@ -20,9 +20,9 @@ struct Problem {
 };
 
 // Springs with random directional weights between all neighbours, and a soft anchor at every sample.
-Problem random_problem(uint32_t side) {
-    const uint32_t n = side * side;
-    Problem problem{StencilMatrix(side), Eigen::MatrixXd::Zero(3 * n, 3 * n), {}};
+Problem random_problem(uint32_t width, uint32_t height) {
+    const uint32_t n = width * height;
+    Problem problem{StencilMatrix(width, height), Eigen::MatrixXd::Zero(3 * n, 3 * n), {}};
     uint64_t draw = 1;
     const auto add = [&](uint32_t i, uint32_t j, const Eigen::Matrix3d& w, double factor) {
         const SymmetricBlock block = {float(w(0, 0)), float(w(0, 1)), float(w(0, 2)),
@@ -36,9 +36,9 @@ Problem random_problem(uint32_t side) {
         draw += 3;
         return Eigen::Matrix3d(a * a.transpose() + 0.05 * Eigen::Matrix3d::Identity());
     };
-    for (uint32_t row = 0; row < side; ++row) {
-        for (uint32_t column = 0; column < side; ++column) {
-            const uint32_t i = row * side + column;
+    for (uint32_t row = 0; row < height; ++row) {
+        for (uint32_t column = 0; column < width; ++column) {
+            const uint32_t i = row * width + column;
             add(i, i, 0.1 * random_weight(), 1);
             const auto spring = [&](uint32_t j) {
                 const Eigen::Matrix3d w = random_weight();
@@ -46,10 +46,10 @@ Problem random_problem(uint32_t side) {
                 add(j, j, w, 1);
                 add(i, j, w, -1);
             };
-            if (column + 1 < side) spring(i + 1);
-            if (row + 1 < side) spring(i + side);
-            if (row + 1 < side && column + 1 < side) spring(i + side + 1);
-            if (row + 1 < side && column > 0) spring(i + side - 1);
+            if (column + 1 < width) spring(i + 1);
+            if (row + 1 < height) spring(i + width);
+            if (row + 1 < height && column + 1 < width) spring(i + width + 1);
+            if (row + 1 < height && column > 0) spring(i + width - 1);
             problem.right.emplace_back(unit(draw), unit(draw + 1), unit(draw + 2));
             draw += 3;
         }
@@ -58,12 +58,13 @@ Problem random_problem(uint32_t side) {
 }
 
 // The same by elimination, with the classes' rows and columns added up.
-std::vector<Vec3> solve_densely(const Problem& problem, const RingGluing& gluing, const std::vector<bool>& fixed) {
+std::vector<Vec3> solve_densely(const Problem& problem, const GridGluing& gluing, const std::vector<bool>& fixed) {
     const auto n = static_cast<Eigen::Index>(problem.right.size());
     Eigen::MatrixXd glue = Eigen::MatrixXd::Zero(3 * n, 3 * n);
     Eigen::VectorXd right(3 * n);
     for (Eigen::Index v = 0; v < n; ++v) {
-        glue.block<3, 3>(3 * v, 3 * Eigen::Index{gluing.representative[v]}).setIdentity();
+        if (gluing.is_defined(static_cast<uint32_t>(v)))
+            glue.block<3, 3>(3 * v, 3 * Eigen::Index{gluing.representative[v]}).setIdentity();
         right.segment<3>(3 * v) = problem.right[v];
     }
     Eigen::MatrixXd a = glue.transpose() * problem.dense * glue;
@@ -81,8 +82,8 @@ std::vector<Vec3> solve_densely(const Problem& problem, const RingGluing& gluing
     return values;
 }
 
-void expect_equal_to_elimination(const RingGluing& gluing, const std::vector<bool>& fixed) {
-    const Problem problem = random_problem(9);
+void expect_equal_to_elimination(const GridGluing& gluing, const std::vector<bool>& fixed) {
+    const Problem problem = random_problem(gluing.width, gluing.height);
     const Solution solution =
         solve(problem.matrix, problem.right, gluing, fixed, {.most_steps = 2000, .tolerance = 1e-6});
     const std::vector<Vec3> expected = solve_densely(problem, gluing, fixed);
@@ -97,6 +98,11 @@ TEST(StencilSolver, GluedSamplesAreOneUnknown) {
     expect_equal_to_elimination(glue_ring(torus_image(9, 1, 0.3).sideband, 9).value(), std::vector<bool>(81, false));
 }
 
+TEST(StencilSolver, UndefinedSamplesStayAtZero) {
+    const MultiChartImage image = sphere_charts(5);
+    expect_equal_to_elimination(glue_charts(image.mask, image.seams).value(), std::vector<bool>(55, false));
+}
+
 TEST(StencilSolver, FixedSamplesStayAtZero) {
     std::vector<bool> fixed(81, false);
     fixed[40] = fixed[41] = fixed[13] = true;
@@ -104,8 +110,8 @@ TEST(StencilSolver, FixedSamplesStayAtZero) {
 }
 
 TEST(StencilSolver, ThreadsChangeNothing) {
-    const Problem problem = random_problem(33);
-    const RingGluing gluing = glue_ring(torus_image(33, 1, 0.3).sideband, 33).value();
+    const Problem problem = random_problem(33, 33);
+    const GridGluing gluing = glue_ring(torus_image(33, 1, 0.3).sideband, 33).value();
     const std::vector<bool> fixed(33 * 33, false);
     std::vector<Vec3> one, two;
     with_threads(1, [&] { one = solve(problem.matrix, problem.right, gluing, fixed, {}).values; });
