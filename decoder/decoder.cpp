@@ -171,7 +171,7 @@ gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t s
 
 gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                 float* positions, void* scratch, size_t scratch_bytes) {
-    return gim_decode_grid(info, bytes, size, image, level, positions, nullptr, nullptr, scratch, scratch_bytes);
+    return gim_decode_grid(info, bytes, size, image, level, positions, nullptr, nullptr, nullptr, scratch, scratch_bytes);
 }
 
 gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
@@ -209,17 +209,25 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
 }
 
 gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                           float* positions, float* normals, uint32_t* triangles, void* scratch, size_t scratch_bytes) {
+                           float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
+                           size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
     Level l;
     if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
     if (l.header.layout == FileLayout::kCharts)
         return code(decode_chart_grid(l.header, span_of(bytes, size), limits_of(&info->limits), level,
-                                      {positions, normals, nullptr, triangles}, {scratch, scratch_bytes}));
+                                      {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
     if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
         return code(s);
     for (size_t i = 0; i < size_t{l.side} * l.side; ++i) to_object(l.header, l.samples + i * 3, positions + i * 3);
     if (normals) sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, normals);
+    if (texcoords) {
+        const float last = static_cast<float>(l.side - 1);
+        for (uint32_t i = 0; i < l.side * l.side; ++i) {
+            texcoords[size_t{i} * 2] = static_cast<float>(i % l.side) / last;
+            texcoords[size_t{i} * 2 + 1] = static_cast<float>(i / l.side) / last;
+        }
+    }
     if (triangles) {
         const VertexNumbers numbers = {l.side, nullptr, 0};
         triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.row_ids, triangles);
@@ -259,7 +267,10 @@ gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, 
                           uint32_t* class_of, uint32_t* path_count) {
     Level l;
     if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
-    if (l.header.layout != FileLayout::kSquares) return code(Status::kBadArgument);
+    if (l.header.layout == FileLayout::kCharts) {
+        if (class_of) return code(Status::kBadArgument);
+        return code(count_chart_paths(l.header, span_of(bytes, size), limits_of(&info->limits), path_count));
+    }
     if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
     if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
     if (path_count) *path_count = l.seams.path_count;

@@ -32,6 +32,12 @@ size_t scratch_size(const ChartLevelShape& shape) {
     return arena.used();
 }
 
+// Of a sample of the full resolution's box, in the rectangle.
+void set_texcoords(const Header& header, const ChartBox& box, uint32_t column, uint32_t row, float* uv) {
+    uv[0] = static_cast<float>(box.atlas_column + static_cast<int32_t>(column)) / static_cast<float>(header.width - 1);
+    uv[1] = static_cast<float>(box.atlas_row + static_cast<int32_t>(row)) / static_cast<float>(header.height - 1);
+}
+
 Status decode(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
               const Memory& scratch, Surface* surface) {
     if (Status s = open_charts(header, file, limits, level, &surface->shape); s != Status::kOk) return s;
@@ -66,22 +72,23 @@ Status chart_level_info(const Header& header, std::span<const uint8_t> file, con
     return Status::kOk;
 }
 
+Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                         uint32_t* path_count) {
+    ChartLevelShape shape;
+    if (Status s = open_charts(header, file, limits, 0, &shape); s != Status::kOk) return s;
+    if (path_count) *path_count = shape.path_count;
+    return Status::kOk;
+}
+
 Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
                          uint32_t level, const SurfaceArrays& out, const Memory& scratch) {
     Surface surface;
     if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
     const ChartLevelShape& shape = surface.shape;
-    const float last_column = static_cast<float>(header.width - 1), last_row = static_cast<float>(header.height - 1);
     for_each_chart_vertex(shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row,
                                                  uint32_t sample) {
         to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
-        if (!out.texcoords) return;
-        // In the rectangle of the full resolution, at every level.
-        const auto at = [&](int32_t begin, uint32_t steps) {
-            return static_cast<float>(begin + static_cast<int32_t>(steps << level));
-        };
-        out.texcoords[size_t{v} * 2] = at(chart.box.atlas_column, column) / last_column;
-        out.texcoords[size_t{v} * 2 + 1] = at(chart.box.atlas_row, row) / last_row;
+        if (out.texcoords) set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
     });
     if (out.normals) chart_normals(shape, surface.ws, surface.samples, surface.triangles, out.normals);
     if (out.triangles) {
@@ -102,6 +109,7 @@ Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, co
         std::fill_n(out.normals, count, 0.0f);
         chart_normals(shape, surface.ws, surface.samples, surface.triangles, surface.vertex_normals);
     }
+    if (out.texcoords) std::fill_n(out.texcoords, count / 3 * 2, 0.0f);
     uint32_t* place = surface.ws.queue;  // of each flat sample in the grid
     for (uint32_t c = 0; c < shape.chart_count; ++c) {
         const DecodedChart& chart = surface.ws.charts[c];
@@ -112,6 +120,9 @@ Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, co
             if (column >= shape.columns || row >= shape.rows) return Status::kMalformed;
             place[sample] = row * shape.columns + column;
             to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{place[sample]} * 3);
+            if (out.texcoords)
+                set_texcoords(header, chart.box, (i % chart.columns) << level, (i / chart.columns) << level,
+                              out.texcoords + size_t{place[sample]} * 2);
             if (out.normals)
                 std::copy_n(surface.vertex_normals + size_t{surface.ws.point[sample]} * 3, 3,
                             out.normals + size_t{place[sample]} * 3);

@@ -98,7 +98,7 @@ gim_status gim_read_plane_info(const gim_info* info, const void* bytes, size_t s
     PlaneLevel plane;
     if (Status s = open_plane(info, bytes, size, image, kind, level, &plane); s != Status::kOk) return code(s);
     *plane_info = {};
-    plane_info->side = plane.side;
+    plane_info->width = plane_info->height = plane.side;
     plane_info->coarsest_level = plane.coarsest;
     plane_info->quantizer = plane.chunk.quantizer;
     plane_info->stream_size = plane.chunk.stream.size();

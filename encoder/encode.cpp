@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "encoder/clean.h"
+#include "encoder/encode_charts.h"
 #include "encoder/finish_encoding.h"
 #include "encoder/input_colors.h"
 #include "encoder/refine.h"
@@ -98,8 +99,14 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
     report.removed_triangles = cleaned.report.degenerate_triangles + cleaned.report.duplicate_triangles;
     report.topology = cleaned.report.topology;
 
+    if (options.layout == Layout::kMcgim) {
+        GIM_TRY(charts, make_charts(cleaned.mesh, options, clock, report));
+        const CodingJob job = code_charts(charts, report);
+        return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
+    }
     GIM_TRY(images, make_images(cleaned.mesh, options, clock, observer, report));
-    return finish_encoding(images, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
+    const CodingJob job = code_squares(images, report);
+    return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
 }
 
 }  // namespace

@@ -29,7 +29,9 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
     // Levels coarser than the node grid cannot be closed, so they are not kept apart.
     options.side = image.side;
     options.node_side = std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side, 5u));
-    return finish_encoding({&image, 1}, std::move(surface), {}, options, clock, std::move(encoded));
+    const std::vector<GeometryImage> images = {std::move(image)};
+    const CodingJob job = code_squares(images, encoded.report);
+    return finish_encoding(job, std::move(surface), {}, options, clock, std::move(encoded));
 }
 
 }  // namespace

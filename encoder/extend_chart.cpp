@@ -73,7 +73,7 @@ std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet:
         low = std::min(low, filled[i]);
         high = std::max(high, filled[i]);
     }
-    constexpr int kRounds = 24;
+    constexpr int kRounds = 100;  // 24: 5 % more bytes; 400: 3 % less
     const double first = std::max<double>(0.25 * (high - low), 2 * finest);
     for (int round = 0; round < kRounds; ++round) {
         const double threshold = first * std::pow(finest / first, double(round) / (kRounds - 1));

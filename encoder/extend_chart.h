@@ -2,8 +2,9 @@
 //
 // The decoder ignores undefined samples, so they may be anything: we look for values whose wavelet coefficients are small.
 // After: the projections onto convex sets of Chen, Civanlar, Haskell (A block transform coder for arbitrarily shaped image
-// segments. ICIP 1994): in turn the small coefficients are dropped and the defined samples put back. Measured against a
-// shape-adaptive wavelet it leaves the decoder as it is for squares.
+// segments. ICIP 1994): in turn the small coefficients are dropped and the defined samples put back, with a threshold that
+// falls to the quantizer's step. To ask instead that coefficients at undefined places vanish, which leaves as many as a
+// shape-adaptive wavelet has, costs 6 % more bytes without loss and up to twice as many lossy ones.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@
 
 namespace gim {
 
-// values: rows * columns triples, of which those of defined samples stay. Cost: some 30 transforms.
+// values: rows * columns triples, of which those of defined samples stay. finest: the last threshold, of a coefficient of
+// unit norm, in units. Cost: some 200 transforms.
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet::Sample> values,
                                                    const std::vector<uint8_t>& defined, uint32_t columns, uint32_t rows,

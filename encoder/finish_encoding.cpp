@@ -6,10 +6,9 @@
 #include "encoder/compare_meshes.h"
 #include "encoder/decode_surface.h"
 #include "encoder/level_report.h"
-#include "encoder/make_planes.h"
 #include "encoder/rate_control.h"
 #include "encoder/result.h"
-#include "encoder/write_gim.h"
+#include "format/chart_table.h"
 #include "gim/decoder.h"
 
 namespace gim {
@@ -27,8 +26,11 @@ Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceS
 }
 
 // Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
-Result<std::vector<uint8_t>> code_and_check(std::span<const GeometryImage> images, const CodingParameters& parameters,
+Result<std::vector<uint8_t>> code_and_check(const CodingJob& job, CodingParameters parameters,
                                             const EncodeOptions& options, const ReferenceSurface& reference) {
+    parameters.lossless = options.rate.kind == RateTarget::Kind::kLossless;
+    parameters.quantizer = first_quantizer(options.rate, options.bits);
+    GIM_TRY(writer, job.make_writer(parameters));
     CompareOptions quick, full;
     quick.threads = full.threads = options.threads;
     quick.samples = kSearchSamples;
@@ -38,7 +40,7 @@ Result<std::vector<uint8_t>> code_and_check(std::span<const GeometryImage> image
     };
     RateTarget target = options.rate;
     for (int attempt = 0;; ++attempt) {
-        GIM_TRY(bytes, code_to_target(images, parameters, target, judge));
+        GIM_TRY(bytes, code_to_target(*writer, parameters.quantizer, target, judge));
         if (target.kind != RateTarget::Kind::kPsnr) return bytes;
         GIM_TRY(comparison, compare_file(bytes, reference, full));
         const double missing = options.rate.value - comparison.psnr;
@@ -57,15 +59,6 @@ uint64_t sideband_size(std::span<const uint8_t> bytes) {
     return 0;
 }
 
-void describe_images(std::span<const GeometryImage> images, EncodeReport& report) {
-    report.images = static_cast<uint32_t>(images.size());
-    for (const GeometryImage& image : images) {
-        if (image.side > report.side) report.node_side = image.sideband.node_side;
-        report.side = std::max(report.side, image.side);
-        report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
-    }
-}
-
 // One value per level of the file; 0 for those that no image can close.
 std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count) {
     std::vector<double> psnr(level_count, 0.0);
@@ -73,13 +66,11 @@ std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t
     return psnr;
 }
 
-void describe_file(std::span<const GeometryImage> images, std::span<const uint8_t> bytes, EncodeReport& report) {
-    double samples = 0;
-    for (const GeometryImage& image : images) samples += double(image.side) * image.side;
+void describe_file(std::span<const uint8_t> bytes, EncodeReport& report) {
     const double bits = 8.0 * static_cast<double>(bytes.size());
     report.file_bytes = bytes.size();
     report.sideband_bytes = sideband_size(bytes);
-    report.bits_per_sample = bits / samples;
+    report.bits_per_sample = bits / static_cast<double>(report.samples);
     report.bits_per_vertex = report.input_vertices > 0 ? bits / static_cast<double>(report.input_vertices) : 0;
 }
 
@@ -118,14 +109,35 @@ Result<bool> check_options(const EncodeOptions& options) {
         case RateTarget::Kind::kLossless:
             break;
     }
-    if (options.layout != Layout::kGim)
-        return wrong("only the single-chart layout (gim) is there yet; leave --layout out");
+    if (options.layout == Layout::kTiles) return wrong("the layout tiles is not there yet; take gim, mcgim or auto");
+    if (options.samples < 1000 || options.samples > (1u << 26))
+        return wrong("the samples must be from 1000 to 67108864; not " + std::to_string(options.samples));
+    if (options.charts > kMaxCharts)
+        return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));
     return true;
 }
 
-Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const TriangleMesh& input,
+CodingJob code_squares(const std::vector<GeometryImage>& images, EncodeReport& report) {
+    report.layout = Layout::kGim;
+    report.images = static_cast<uint32_t>(images.size());
+    for (const GeometryImage& image : images) {
+        if (image.side > report.side) report.node_side = image.sideband.node_side;
+        report.side = std::max(report.side, image.side);
+        report.samples += uint64_t{image.side} * image.side;
+        report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+    }
+    report.width = report.height = report.side;
+    CodingJob job;
+    job.make_writer = [&images](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
+        GIM_TRY(writer, GimWriter::create(images, parameters));
+        return std::unique_ptr<FileWriter>(new GimWriter(std::move(writer)));
+    };
+    job.make_planes = [&images](const PlaneMaker& maker) { return maker.make(images); };
+    return job;
+}
+
+Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const TriangleMesh& input,
                                 const EncodeOptions& options, StageClock& clock, Encoded encoded) {
-    describe_images(images, encoded.report);
     const ReferenceSurface surface(std::move(reference), options.threads);
     CompareOptions compare_options;
     compare_options.threads = options.threads;
@@ -134,7 +146,7 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     const PlaneMaker plane_maker(surface.mesh(), input, options);
     if (plane_maker.wants_any()) {
         clock.begin(Stage::kPlanes);
-        GIM_TRY(planes, plane_maker.make(images));
+        GIM_TRY(planes, job.make_planes(plane_maker));
         parameters.planes = std::move(planes);
     }
 
@@ -142,7 +154,7 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
     parameters.level_psnr = true;
-    GIM_TRY(bytes, code_and_check(images, parameters, options, surface));
+    GIM_TRY(bytes, code_and_check(job, parameters, options, surface));
     encoded.bytes = std::move(bytes);
 
     clock.begin(Stage::kCompare);
@@ -156,7 +168,7 @@ Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh refe
     encoded.report.planes = std::move(planes);
     clock.end();
 
-    describe_file(images, encoded.bytes, encoded.report);
+    describe_file(encoded.bytes, encoded.report);
     encoded.report.times = clock.times();
     for (const StageTime& time : encoded.report.times) encoded.report.seconds += time.seconds;
     return encoded;

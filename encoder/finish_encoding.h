@@ -4,13 +4,15 @@
 #include <tbb/task_arena.h>
 
 #include <exception>
+#include <functional>
+#include <memory>
 #include <new>
-#include <span>
 #include <string>
 
-#include "encoder/geometry_image.h"
+#include "encoder/make_planes.h"
 #include "encoder/mesh.h"
 #include "encoder/stage_clock.h"
+#include "encoder/write_gim.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -18,9 +20,17 @@ namespace gim {
 // Ranges of EncodeOptions.
 Result<bool> check_options(const EncodeOptions& options);
 
-// Codes the images to the target of the options, judging the decoded surface against `reference`, and completes the report.
+// What is coded: images of one layout or another.
+struct CodingJob {
+    std::function<Result<std::unique_ptr<FileWriter>>(const CodingParameters&)> make_writer;
+    std::function<Result<std::vector<CodedPlane>>(const PlaneMaker&)> make_planes;
+};
+// Squares; describes them in the report as well. The images must outlive the job.
+CodingJob code_squares(const std::vector<GeometryImage>& images, EncodeReport& report);
+
+// Codes to the target of the options, judging the decoded surface against `reference`, and completes the report.
 // `input`: the mesh as read, for its colours.
-Result<Encoded> finish_encoding(std::span<const GeometryImage> images, Mesh reference, const TriangleMesh& input,
+Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const TriangleMesh& input,
                                 const EncodeOptions& options, StageClock& clock, Encoded encoded);
 
 // Runs body on `threads` threads (0: all cores) and turns what it throws into an Error: nothing leaves a public function.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kSamples = 100000;  // each way; enough for half a decibel many times over
 
-// The sizes of one level; side 0 where no image has it.
+// The sizes of one level; width 0 where no image has it.
 Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_info& info, uint32_t level) {
     LevelReport report;
     report.level = level;
@@ -24,7 +24,8 @@ Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_inf
             status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, shape.coarsest_level, &shape);
         } else if (status == GIM_OK) {
             status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, level, &shape);
-            report.side = std::max(report.side, shape.side);
+            report.width = std::max(report.width, shape.width);
+            report.height = std::max(report.height, shape.height);
         }
         if (status != GIM_OK) return Error{Stage::kCode, std::string("own output: ") + gim_status_text(status)};
         report.vertices += shape.vertex_count;
@@ -45,7 +46,7 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
     std::vector<LevelReport> levels;
     for (uint32_t level = 0; level < info.level_count; ++level) {
         GIM_TRY(report, describe_level(bytes, info, level));
-        if (report.side == 0) break;
+        if (report.width == 0) break;
         report.psnr = full.psnr;
         if (level > 0) {
             GIM_TRY(surface, decode_surface(bytes, level));

@@ -95,18 +95,16 @@ gim_status append_grid(const gim_info& info, std::span<const uint8_t> file, uint
     gim_level_info level;
     gim_status status = gim_read_level_info(&info, file.data(), file.size(), image, 0, &level);
     if (status != GIM_OK) return status;
-    std::vector<float> positions(size_t{level.side} * level.side * 3);
+    std::vector<float> positions(size_t{level.width} * level.height * 3), texcoords(positions.size() / 3 * 2);
     std::vector<uint32_t> triangles(size_t{level.triangle_count} * 3);
     std::vector<std::max_align_t> scratch(level.scratch_size / sizeof(std::max_align_t) + 1);
-    status = gim_decode_grid(&info, file.data(), file.size(), image, 0, positions.data(), nullptr, triangles.data(),
-                             scratch.data(), level.scratch_size);
+    status = gim_decode_grid(&info, file.data(), file.size(), image, 0, positions.data(), nullptr,
+                             texcoords.data(), triangles.data(), scratch.data(), level.scratch_size);
     if (status != GIM_OK) return status;
     const auto first = static_cast<uint32_t>(grids->mesh.positions.size());
     for (size_t i = 0; i < positions.size(); i += 3) {
         grids->mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
-        const size_t row = i / 3 / level.side, column = i / 3 % level.side;
-        const auto at = static_cast<double>(column), down = static_cast<double>(row);
-        grids->texcoords.push_back(Vec2(at, down) / (level.side - 1));
+        grids->texcoords.emplace_back(texcoords[i / 3 * 2], texcoords[i / 3 * 2 + 1]);
     }
     for (size_t i = 0; i < triangles.size(); i += 3) {
         grids->mesh.triangles.push_back({first + triangles[i], first + triangles[i + 1], first + triangles[i + 2]});
@@ -116,16 +114,16 @@ gim_status append_grid(const gim_info& info, std::span<const uint8_t> file, uint
 }
 
 struct DecodedPlane {
-    uint32_t side = 0;
+    uint32_t width = 0, height = 0;
     std::vector<float> values;
 
     Vec3 at(const Vec2& uv) const {
-        const double x = std::clamp(uv.x(), 0.0, 1.0) * (side - 1), y = std::clamp(uv.y(), 0.0, 1.0) * (side - 1);
-        const uint32_t c = std::min(static_cast<uint32_t>(x), side - 2),
-                       r = std::min(static_cast<uint32_t>(y), side - 2);
+        const double x = std::clamp(uv.x(), 0.0, 1.0) * (width - 1), y = std::clamp(uv.y(), 0.0, 1.0) * (height - 1);
+        const uint32_t c = std::min(static_cast<uint32_t>(x), width - 2),
+                       r = std::min(static_cast<uint32_t>(y), height - 2);
         const double s = x - c, t = y - r;
         const auto texel = [&](uint32_t row, uint32_t column) {
-            const float* v = values.data() + (size_t{row} * side + column) * 3;
+            const float* v = values.data() + (size_t{row} * width + column) * 3;
             return Vec3(v[0], v[1], v[2]);
         };
         return (1 - t) * ((1 - s) * texel(r, c) + s * texel(r, c + 1)) +
@@ -140,8 +138,9 @@ Result<std::vector<DecodedPlane>> decode_planes(const gim_info& info, std::span<
         gim_plane_info shape;
         gim_status status = gim_read_plane_info(&info, file.data(), file.size(), i, number, 0, &shape);
         if (status != GIM_OK) return decoding_error(status);
-        planes[i].side = shape.side;
-        planes[i].values.resize(size_t{shape.side} * shape.side * 3);
+        planes[i].width = shape.width;
+        planes[i].height = shape.height;
+        planes[i].values.resize(size_t{shape.width} * shape.height * 3);
         std::vector<std::max_align_t> scratch(shape.scratch_size / sizeof(std::max_align_t) + 1);
         status = gim_decode_plane(&info, file.data(), file.size(), i, number, 0, planes[i].values.data(),
                                   scratch.data(), shape.scratch_size);
@@ -317,7 +316,10 @@ Result<std::vector<PlaneReport>> PlaneMaker::measure(std::span<const uint8_t> fi
         }
         PlaneReport report;
         report.kind = kind;
-        for (const DecodedPlane& plane : planes) report.side = std::max(report.side, plane.side);
+        for (const DecodedPlane& plane : planes) {
+            report.width = std::max(report.width, plane.width);
+            report.height = std::max(report.height, plane.height);
+        }
         report.bytes = chunk_size(info, file, kind);
         const double mean = count > 0 ? sum / static_cast<double>(count) : 0;
         (kind == Kind::kColors ? report.psnr : report.mean_angle) =

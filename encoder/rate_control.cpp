@@ -30,7 +30,7 @@ double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((
 // About 6 dB per halving: the first guess after the first measurement, and the safeguard of the secant afterwards.
 constexpr double kDecibelPerOctave = 6;
 
-Result<Bytes> search_psnr(const GimWriter& writer, double start, double target, const JudgeFile& judge) {
+Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
     double fine = kFinest - 1, coarse = kCoarsest + 1;  // judged good enough / too coarse so far, as logarithms
     double fine_psnr = 0, coarse_psnr = 0, best_psnr = 0;
     Bytes best;
@@ -66,7 +66,7 @@ Result<Bytes> search_psnr(const GimWriter& writer, double start, double target, 
     return best;
 }
 
-Result<Bytes> search_bytes(const GimWriter& writer, double start, double budget) {
+Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
     double fine = kFinest - 1, coarse = kCoarsest + 1;  // too large / small enough so far, as logarithms
     Bytes best;
     size_t smallest = SIZE_MAX;
@@ -97,21 +97,20 @@ Result<Bytes> search_bytes(const GimWriter& writer, double start, double budget)
 
 }  // namespace
 
-Result<Bytes> code_to_target(std::span<const GeometryImage> images, CodingParameters parameters,
-                             const RateTarget& target, const JudgeFile& judge) {
-    parameters.lossless = target.kind == RateTarget::Kind::kLossless;
-    const double start =
-        quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, parameters.bits);
-    parameters.quantizer = std::clamp(start, std::exp2(kFinest), std::exp2(kCoarsest));
-    GIM_TRY(writer, GimWriter::create(images, parameters));
+double first_quantizer(const RateTarget& target, uint32_t bits) {
+    const double start = quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, bits);
+    return std::clamp(start, std::exp2(kFinest), std::exp2(kCoarsest));
+}
+
+Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateTarget& target, const JudgeFile& judge) {
     switch (target.kind) {
         case RateTarget::Kind::kLossless:
         case RateTarget::Kind::kQuality:
-            return writer.write(parameters.quantizer);
+            return writer.write(first);
         case RateTarget::Kind::kPsnr:
-            return search_psnr(writer, std::log2(start), target.value, judge);
+            return search_psnr(writer, std::log2(first), target.value, judge);
         case RateTarget::Kind::kBytes:
-            return search_bytes(writer, std::log2(start), target.value);
+            return search_bytes(writer, std::log2(first), target.value);
     }
     return Error{Stage::kCode, "unknown rate target"};
 }

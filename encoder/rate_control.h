@@ -1,12 +1,12 @@
 // Chooses the quantizer that a rate target asks for, by coding and decoding until it is met.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "encoder/geometry_image.h"
-#include "encoder/write_gim.h"
+#include "encoder/assemble_file.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -19,8 +19,11 @@ using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 //   quality   no search: 75 is a step of 8 quantization steps of a 12-bit quantizer, 10 more halve it
 //   psnr      the largest quantizer found whose file is judged not below `value`; an Error names the best in reach
 //   bytes     the smallest quantizer found whose file is not above `value`; an Error names the smallest size in reach
-// `parameters.lossless` and `parameters.quantizer` are set here. Cost: up to about 16 files written, each judged for psnr.
-Result<std::vector<uint8_t>> code_to_target(std::span<const GeometryImage> images, CodingParameters parameters,
-                                            const RateTarget& target, const JudgeFile& judge);
+// first: where searches begin, and what the others take. Cost: up to about 16 files written, each judged for psnr.
+Result<std::vector<uint8_t>> code_to_target(const FileWriter& writer, double first, const RateTarget& target,
+                                            const JudgeFile& judge);
+
+// That of a quality, or of quality 75 for searches.
+double first_quantizer(const RateTarget& target, uint32_t bits);
 
 }  // namespace gim

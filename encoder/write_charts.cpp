@@ -121,7 +121,7 @@ Result<ChartFileWriter> ChartFileWriter::create(const ChartImages& images, const
     writer.table_ = serialize_chart_table(table, header);
 
     const size_t count = images.charts.size();
-    const auto finest = static_cast<float>(parameters.lossless ? 1.0 : std::max(0.25, 0.5 * parameters.quantizer));
+    const auto finest = static_cast<float>(parameters.lossless ? 1.0 : std::max(0.5, parameters.quantizer));
     writer.lossless_.resize(parameters.lossless ? count : 0);
     writer.lossy_.resize(parameters.lossless ? 0 : count);
     parallel_blocks(count, 1, 0, [&](size_t, size_t begin, size_t end) {

@@ -37,12 +37,6 @@ CLI::Validator finite_range(double low, double high, const std::string& name) {
     return {check, name};
 }
 
-// Of layouts that this version cannot make yet: known, so that scripts get a clear answer.
-CLI::Validator not_yet(const std::string& what) {
-    const auto check = [what](const std::string&) { return "not available in this version: " + what; };
-    return {check, "N"};
-}
-
 struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
@@ -82,8 +76,13 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
                     "Coarsest level that stays closed: the cut's nodes lie on a grid of this side")
         ->check(side_validator(3, 4097))
         ->capture_default_str();
-    sub->add_option("--samples", "Bound of width * height")->check(not_yet("it is for the layouts mcgim and tiles"));
-    sub->add_option("--charts", "Number of charts")->check(not_yet("it is for the layout mcgim"));
+    sub->add_option("--samples", a.command.options.samples, "mcgim: bound on width * height of the image")
+        ->check(CLI::Range(1000, 1 << 26))
+        ->capture_default_str();
+    sub->add_option("--charts", a.command.options.charts,
+                    "mcgim: how many charts; a few more come out where the surface asks for them; 0: chosen by the shape")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
         ->check(CLI::Range(8, 20))
         ->capture_default_str();

@@ -36,7 +36,7 @@ Result<Bytes> write_plane(Kind kind, const ImagePlane& plane, const std::string&
 Result<bool> add_planes(Kind kind, const std::string& path, const Images& images, std::vector<OutputFile>& files) {
     for (size_t i = 0; i < images.size(); ++i) {
         const ImagePlane& plane = kind == Kind::kNormals ? images[i].normal_map : images[i].colors;
-        if (plane.side == 0) {
+        if (!plane.is_there()) {
             return Error{Stage::kWrite, kind == Kind::kNormals
                                             ? "the .gim file has no normal map; encode it with --normals N"
                                             : "the .gim file has no colours; encode a mesh that has them"};

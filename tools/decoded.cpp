@@ -20,8 +20,9 @@ gim_status decode_plane(const gim_info& info, const Bytes& file, uint32_t image,
     const gim_status status = gim_read_plane_info(&info, file.data(), file.size(), image, kind, 0, &shape);
     if (status == GIM_NO_SUCH_PLANE) return GIM_OK;
     if (status != GIM_OK) return status;
-    plane->side = shape.side;
-    plane->values.resize(size_t{3} * shape.side * shape.side);
+    plane->columns = shape.width;
+    plane->rows = shape.height;
+    plane->values.resize(size_t{3} * shape.width * shape.height);
     std::vector<Block> scratch(shape.scratch_size / sizeof(Block) + 1);
     return gim_decode_plane(&info, file.data(), file.size(), image, kind, 0, plane->values.data(), scratch.data(),
                             shape.scratch_size);
@@ -68,19 +69,21 @@ Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t leve
         status = gim_read_level_info(&info, file.data(), file.size(), i, image.level, &shape);
         if (status != GIM_OK) return failed(what, status);
 
-        image.side = shape.side;
-        const size_t samples = size_t{shape.side} * shape.side;
+        image.columns = shape.width;
+        image.rows = shape.height;
+        const size_t samples = size_t{shape.width} * shape.height;
         image.grid.resize(3 * samples);
         image.grid_normals.resize(3 * samples);
+        image.grid_texcoords.resize(2 * samples);
         image.grid_triangles.resize(size_t{3} * shape.triangle_count);
         image.positions.resize(size_t{3} * shape.vertex_count);
         image.normals.resize(size_t{3} * shape.vertex_count);
         image.texcoords.resize(size_t{2} * shape.vertex_count);
         image.triangles.resize(size_t{3} * shape.triangle_count);
         scratch.resize(shape.scratch_size / sizeof(Block) + 1);
-        status =
-            gim_decode_grid(&info, file.data(), file.size(), i, image.level, image.grid.data(),
-                            image.grid_normals.data(), image.grid_triangles.data(), scratch.data(), shape.scratch_size);
+        status = gim_decode_grid(&info, file.data(), file.size(), i, image.level, image.grid.data(),
+                                 image.grid_normals.data(), image.grid_texcoords.data(), image.grid_triangles.data(),
+                                 scratch.data(), shape.scratch_size);
         if (status != GIM_OK) return failed(what, status);
         status = gim_decode_mesh(&info, file.data(), file.size(), i, image.level, image.positions.data(),
                                  image.normals.data(), image.texcoords.data(), image.triangles.data(), scratch.data(),
@@ -97,6 +100,29 @@ Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t leve
                                         "; the coarsest level of this file is " + std::to_string(reached)};
     }
     return images;
+}
+
+GridMesh grid_mesh(const DecodedImage& image) {
+    GridMesh mesh;
+    std::vector<uint32_t> vertex(image.grid.size() / 3, 0);
+    for (uint32_t i = 0; i < vertex.size(); ++i) {
+        if (!image.is_defined(i)) continue;
+        vertex[i] = static_cast<uint32_t>(mesh.samples.size());
+        mesh.samples.push_back(i);
+    }
+    mesh.triangles.reserve(image.grid_triangles.size());
+    for (const uint32_t sample : image.grid_triangles) mesh.triangles.push_back(vertex[sample]);
+    return mesh;
+}
+
+std::vector<float> at_samples(const GridMesh& mesh, const std::vector<float>& values, size_t width) {
+    std::vector<float> result;
+    result.reserve(mesh.samples.size() * width);
+    for (const uint32_t sample : mesh.samples) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(sample * width);
+        result.insert(result.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+    }
+    return result;
 }
 
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images) {

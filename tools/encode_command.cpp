@@ -48,16 +48,19 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("file", command.output));
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
-    const std::string side = std::to_string(report.side);
-    print_line(format_line(
-        "image", side + " x " + side + (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
+    print_line(format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
+                                        (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
+    if (report.charts > 0) {
+        print_line(format_line("charts", std::to_string(report.charts) + ", " +
+                                             fixed(100 * report.packing_efficiency, 1) + " % of the samples defined"));
+    }
     print_line(format_line("bytes", with_thousands(report.file_bytes)));
     for (const PlaneReport& plane : report.planes) {
         const bool is_color = plane.kind == PlaneReport::Kind::kColors;
-        const std::string plane_side = std::to_string(plane.side);
+        const std::string size = std::to_string(plane.width) + " x " + std::to_string(plane.height);
         print_line(
             format_line(is_color ? "colours" : "normal map",
-                        plane_side + " x " + plane_side + ", " + with_thousands(plane.bytes) + " bytes, " +
+                        size + ", " + with_thousands(plane.bytes) + " bytes, " +
                             (is_color ? fixed(plane.psnr, 1) + " dB" : fixed(plane.mean_angle, 2) + " degrees")));
     }
     print_line(format_line("bits per vertex", fixed(report.bits_per_vertex, 3)));

@@ -69,8 +69,10 @@ void add_image(const Bytes& file, uint32_t index, Description& d) {
     if (status != GIM_OK && status != GIM_NO_SUCH_LEVEL) d.problems.push_back(name + ": " + describe_status(status));
     if (!image.levels.empty()) {
         const gim_level_info& full = image.levels[0].shape;
-        std::vector<uint32_t> class_of(size_t{4} * (full.side - 1));
-        status = gim_read_seams(&d.info, file.data(), file.size(), index, 0, class_of.data(), &image.paths);
+        // Charts have no ring.
+        std::vector<uint32_t> class_of(full.side > 0 ? size_t{4} * (full.side - 1) : 0);
+        status = gim_read_seams(&d.info, file.data(), file.size(), index, 0,
+                                class_of.empty() ? nullptr : class_of.data(), &image.paths);
         if (status != GIM_OK) d.problems.push_back(name + ", seams: " + describe_status(status));
         image.seam_points = static_cast<uint32_t>(std::set<uint32_t>(class_of.begin(), class_of.end()).size());
     }
@@ -150,7 +152,8 @@ void print_json(const std::string& path, const Description& d) {
         ordered_json levels = ordered_json::array();
         for (const Level& level : image.levels) {
             levels.push_back({{"level", level.level},
-                              {"side", level.shape.side},
+                              {"width", level.shape.width},
+                              {"height", level.shape.height},
                               {"vertices", level.shape.vertex_count},
                               {"triangles", level.shape.triangle_count},
                               {"prefix_bytes", level.shape.prefix_size},
@@ -159,7 +162,8 @@ void print_json(const std::string& path, const Description& d) {
         ordered_json planes = ordered_json::array();
         for (const Plane& plane : image.planes) {
             planes.push_back({{"kind", plane_name(plane.kind)},
-                              {"side", plane.shape.side},
+                              {"width", plane.shape.width},
+                              {"height", plane.shape.height},
                               {"bytes", plane.shape.stream_size},
                               {"quantizer", plane.shape.quantizer}});
         }
@@ -219,17 +223,19 @@ void print_text(const std::string& path, const Description& d) {
     }
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
-        std::printf("image %zu: %u cut paths, %u surface points on the ring\n", i, image.paths, image.seam_points);
-        std::printf("  level   side   vertices  triangles   bytes needed\n");
+        std::printf("image %zu: %u cut paths", i, image.paths);
+        if (image.seam_points > 0) std::printf(", %u surface points on the ring", image.seam_points);
+        std::printf("\n  level         size   vertices  triangles   bytes needed\n");
         for (const Level& level : image.levels) {
-            std::printf("  %5u  %5u  %9u  %9u  %13llu\n", level.level, level.shape.side, level.shape.vertex_count,
-                        level.shape.triangle_count, static_cast<unsigned long long>(level.shape.prefix_size));
+            std::printf("  %5u  %5u x %4u  %9u  %9u  %13llu\n", level.level, level.shape.width, level.shape.height,
+                        level.shape.vertex_count, level.shape.triangle_count,
+                        static_cast<unsigned long long>(level.shape.prefix_size));
         }
     }
     for (size_t i = 0; i < d.images.size(); ++i) {
         for (const Plane& plane : d.images[i].planes) {
             std::printf("image %zu, %s: %u x %u, %llu bytes, quantizer %g\n", i, plane_name(plane.kind),
-                        plane.shape.side, plane.shape.side, static_cast<unsigned long long>(plane.shape.stream_size),
+                        plane.shape.width, plane.shape.height, static_cast<unsigned long long>(plane.shape.stream_size),
                         static_cast<double>(plane.shape.quantizer));
         }
     }

@@ -27,7 +27,7 @@ std::vector<uint8_t> color_pixels(const ImagePlane& colors) {
 }
 
 Result<Bytes> write_color_png(const ImagePlane& colors) {
-    return png_or_error(png_bytes(color_pixels(colors).data(), colors.side, colors.side));
+    return png_or_error(png_bytes(color_pixels(colors).data(), colors.columns, colors.rows));
 }
 
 Result<Bytes> write_normal_png(const ImagePlane& normals) {
@@ -37,29 +37,28 @@ Result<Bytes> write_normal_png(const ImagePlane& normals) {
         rgb.push_back(
             static_cast<uint16_t>(std::lround(32767.5 * (1 + std::clamp(static_cast<double>(v), -1.0, 1.0)))));
     }
-    return png_or_error(png16_bytes(rgb.data(), normals.side, normals.side));
+    return png_or_error(png16_bytes(rgb.data(), normals.columns, normals.rows));
 }
 
 Result<Bytes> write_normal_exr(const ImagePlane& normals) {
-    return write_triples_exr(normals.side, normals.values, {"X", "Y", "Z"});
+    return write_triples_exr(normals.columns, normals.rows, normals.values, {"X", "Y", "Z"});
 }
 
 Result<Bytes> write_color_exr(const ImagePlane& colors) {
     std::vector<float> linear = colors.values;
     for (float& v : linear) v = to_linear(v);
-    return write_triples_exr(colors.side, linear, {"R", "G", "B"});
+    return write_triples_exr(colors.columns, colors.rows, linear, {"R", "G", "B"});
 }
 
-std::array<uint8_t, 3> color_at(const ImagePlane& colors, uint32_t side, uint32_t row, uint32_t column) {
-    const double scale = double(colors.side - 1) / (side - 1);
-    const double y = row * scale, x = column * scale;
-    const uint32_t r = std::min(static_cast<uint32_t>(y), colors.side - 2);
-    const uint32_t c = std::min(static_cast<uint32_t>(x), colors.side - 2);
+std::array<uint8_t, 3> color_at(const ImagePlane& colors, double u, double v) {
+    const double x = std::clamp(u, 0.0, 1.0) * (colors.columns - 1), y = std::clamp(v, 0.0, 1.0) * (colors.rows - 1);
+    const uint32_t r = std::min(static_cast<uint32_t>(y), colors.rows - 2);
+    const uint32_t c = std::min(static_cast<uint32_t>(x), colors.columns - 2);
     const double t = y - r, s = x - c;
     std::array<uint8_t, 3> rgb = {};
     for (size_t k = 0; k < 3; ++k) {
         const auto at = [&](uint32_t i, uint32_t j) {
-            return static_cast<double>(colors.values[(size_t{i} * colors.side + j) * 3 + k]);
+            return static_cast<double>(colors.values[(size_t{i} * colors.columns + j) * 3 + k]);
         };
         const double value =
             (1 - t) * ((1 - s) * at(r, c) + s * at(r, c + 1)) + t * ((1 - s) * at(r + 1, c) + s * at(r + 1, c + 1));

@@ -20,7 +20,7 @@ Result<Bytes> write_normal_png(const ImagePlane& normals);
 Result<Bytes> write_normal_exr(const ImagePlane& normals);
 Result<Bytes> write_color_exr(const ImagePlane& colors);
 
-// The colour at a sample of a grid of another side.
-std::array<uint8_t, 3> color_at(const ImagePlane& colors, uint32_t side, uint32_t row, uint32_t column);
+// The colour at a place of the image, 0..1 along columns and rows.
+std::array<uint8_t, 3> color_at(const ImagePlane& colors, double u, double v);
 
 }  // namespace gim

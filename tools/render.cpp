@@ -359,6 +359,7 @@ Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
     high.fill(-std::numeric_limits<float>::infinity());
     for (const DecodedImage& image : images) {
         for (size_t i = 0; i < image.grid.size(); ++i) {
+            if (!image.is_defined(i / 3)) continue;
             low[i % 3] = std::min(low[i % 3], image.grid[i]);
             high[i % 3] = std::max(high[i % 3], image.grid[i]);
         }
@@ -370,12 +371,18 @@ Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
         const DecodedImage& image = images[i];
         const auto left = static_cast<uint32_t>(i % tiles) * tile;
         const auto top = static_cast<uint32_t>(i / tiles) * tile;
+        const uint32_t longer = std::max(image.columns, image.rows);
+        const uint32_t x_margin = (longer - image.columns) / 2, y_margin = (longer - image.rows) / 2;
         for (uint32_t y = 0; y < tile; ++y) {
             for (uint32_t x = 0; x < tile; ++x) {
-                const uint32_t row = y * image.side / tile;
-                const uint32_t column = x * image.side / tile;
+                // Undefined samples stay white, as what lies beside an image that is no square; below zero wraps round.
+                const auto row = static_cast<uint32_t>(uint64_t{y} * longer / tile) - y_margin;
+                const auto column = static_cast<uint32_t>(uint64_t{x} * longer / tile) - x_margin;
+                if (row >= image.rows || column >= image.columns) continue;
+                const size_t sample = size_t{row} * image.columns + column;
+                if (!image.is_defined(sample)) continue;
                 for (size_t k = 0; k < 3; ++k) {
-                    const float value = image.grid[3 * (size_t{row} * image.side + column) + k];
+                    const float value = image.grid[3 * sample + k];
                     const float range = high[k] - low[k];
                     const float share = range > 0 ? (value - low[k]) / range : 0.5F;
                     picture.rgb[3 * (size_t{top + y} * size + left + x) + k] =

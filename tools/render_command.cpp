@@ -21,9 +21,9 @@ Result<Picture> triptych(const TriangleMesh& original, const RenderCommand& comm
     if (!decoded.ok()) return decoded.error();
     const std::vector<DecodedImage>& images = decoded.value();
     const TriangleMesh surface = to_mesh(images);
-    const std::string side = std::to_string(images[0].side);
+    const std::string size = std::to_string(images[0].columns) + " x " + std::to_string(images[0].rows);
     const std::string image_caption =
-        (images.size() == 1 ? side + " x " + side + " image, " : std::to_string(images.size()) + " images, ") +
+        (images.size() == 1 ? size + " image, " : std::to_string(images.size()) + " images, ") +
         with_thousands(file.value().size()) + " bytes";
     const std::vector<Panel> panels = {
         {render_mesh(original, view), "original, " + with_thousands(original.positions.size()) + " vertices"},

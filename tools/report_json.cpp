@@ -35,7 +35,7 @@ ordered_json to_json(const EncodeReport& report) {
     ordered_json planes = ordered_json::array();
     for (const PlaneReport& plane : report.planes) {
         const bool is_color = plane.kind == PlaneReport::Kind::kColors;
-        ordered_json entry = {{"kind", is_color ? "colors" : "normals"}, {"side", plane.side}, {"bytes", plane.bytes}};
+        ordered_json entry = {{"kind", is_color ? "colors" : "normals"}, {"width", plane.width}, {"height", plane.height}, {"bytes", plane.bytes}};
         entry[is_color ? "psnr" : "mean_angle"] = is_color ? plane.psnr : plane.mean_angle;
         planes.push_back(entry);
     }
@@ -44,7 +44,8 @@ ordered_json to_json(const EncodeReport& report) {
     ordered_json levels = ordered_json::array();
     for (const LevelReport& level : report.levels) {
         levels.push_back({{"level", level.level},
-                          {"side", level.side},
+                          {"width", level.width},
+                          {"height", level.height},
                           {"vertices", level.vertices},
                           {"triangles", level.triangles},
                           {"prefix_bytes", level.prefix_bytes},
@@ -55,7 +56,14 @@ ordered_json to_json(const EncodeReport& report) {
             {"welded_vertices", report.welded_vertices},
             {"removed_triangles", report.removed_triangles},
             {"topology", to_json(report.topology)},
+            {"layout", report.layout == Layout::kMcgim ? "mcgim" : "gim"},
             {"images", report.images},
+            {"width", report.width},
+            {"height", report.height},
+            {"samples", report.samples},
+            {"charts", report.charts},
+            {"defined_samples", report.defined_samples},
+            {"packing_efficiency", report.packing_efficiency},
             {"side", report.side},
             {"node_side", report.node_side},
             {"cut_paths", report.cut_paths},

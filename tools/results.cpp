@@ -96,7 +96,7 @@ std::string row(const std::string& model, const Setting& setting, const Triangle
                   static_cast<unsigned long long>(r.file_bytes), r.error.psnr, r.error.rms_to_test,
                   r.error.rms_to_reference, r.error.hausdorff, r.stretch_efficiency,
                   static_cast<unsigned long long>(r.folds_before_fit), static_cast<unsigned long long>(r.folds),
-                  r.levels.empty() ? r.side : r.levels.back().side, decode_milliseconds(encoded.value().bytes),
+                  r.levels.empty() ? r.side : r.levels.back().width, decode_milliseconds(encoded.value().bytes),
                   r.seconds);
     return line;
 }

@@ -67,22 +67,19 @@ std::array<float, 3> facet_normal(const DecodedImage& image, const uint32_t* tri
 }
 
 bool has_colors(std::span<const DecodedImage> images) {
-    return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.colors.side > 0; });
+    return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.colors.is_there(); });
 }
 
 // Of a fused vertex, at its first sample; white where the image has no colours.
 std::array<uint8_t, 3> vertex_color(const DecodedImage& image, size_t v) {
-    if (image.colors.side == 0) return {255, 255, 255};
-    const auto last = static_cast<float>(image.side - 1);
-    const auto sample = [&](size_t k) { return static_cast<uint32_t>(std::lround(image.texcoords[2 * v + k] * last)); };
-    return color_at(image.colors, image.side, sample(1), sample(0));
+    if (!image.colors.is_there()) return {255, 255, 255};
+    return color_at(image.colors, image.texcoords[2 * v], image.texcoords[2 * v + 1]);
 }
 
 }  // namespace
 
-float texture_coordinate(uint32_t i, uint32_t last, uint32_t side) {
-    const float t = static_cast<float>(i) / static_cast<float>(last);
-    return side == 0 ? t : (t * static_cast<float>(side - 1) + 0.5F) / static_cast<float>(side);
+float texture_coordinate(float t, uint32_t pixels) {
+    return pixels == 0 ? t : (t * static_cast<float>(pixels - 1) + 0.5F) / static_cast<float>(pixels);
 }
 
 std::optional<SurfaceFormat> surface_format_of(std::string_view extension) {
@@ -149,27 +146,26 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
             for (size_t k = 0; k < 3; ++k) row[3 + k] = static_cast<float>(rgb[k]) / 255.0F;
             append_row(out, "v", row);
         }
-        const uint32_t last = image.side - 1;
-        for (uint32_t row = 0; row < image.side; ++row) {
-            for (uint32_t column = 0; column < image.side; ++column) {
-                // OBJ puts the origin of textures at the bottom left.
-                const std::array<float, 2> uv = {texture_coordinate(column, last, image.colors.side),
-                                                 1.0F - texture_coordinate(row, last, image.colors.side)};
-                append_row(out, "vt", uv);
-            }
+        const GridMesh grid = grid_mesh(image);
+        for (const uint32_t sample : grid.samples) {
+            const float* t = &image.grid_texcoords[size_t{2} * sample];
+            // OBJ puts the origin of textures at the bottom left.
+            const std::array<float, 2> uv = {texture_coordinate(t[0], image.colors.columns),
+                                             1.0F - texture_coordinate(t[1], image.colors.rows)};
+            append_row(out, "vt", uv);
         }
         for (size_t v = 0; v < image.normals.size(); v += 3) append_row(out, "vn", {&image.normals[v], 3});
         for (size_t t = 0; t < image.triangles.size(); t += 3) {
             out.push_back('f');
             for (size_t k = 0; k < 3; ++k) {
                 append_number(out, base + image.triangles[t + k], ' ');
-                append_number(out, grid_base + image.grid_triangles[t + k], '/');
+                append_number(out, grid_base + grid.triangles[t + k], '/');
                 append_number(out, base + image.triangles[t + k], '/');
             }
             out.push_back('\n');
         }
         base += image.positions.size() / 3;
-        grid_base += size_t{image.side} * image.side;
+        grid_base += grid.samples.size();
     }
     return out;
 }

@@ -40,12 +40,12 @@ Bytes write_stl(std::span<const DecodedImage> images);  // binary
 Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused);
 Result<Bytes> write_exr(std::span<const DecodedImage> images);  // float32 X, Y, Z, mask; ZIP
 
-// side*side triples as three float32 channels of these names.
-Result<Bytes> write_triples_exr(uint32_t side, const std::vector<float>& values,
+// columns*rows triples as three float32 channels of these names.
+Result<Bytes> write_triples_exr(uint32_t columns, uint32_t rows, const std::vector<float>& values,
                                 const std::array<const char*, 3>& channels);
 
-// A texture coordinate so that sample 0 and the last one are centres of the first and last pixel of a side-pixel texture, which
-// is where renderers expect the pixels' values. side 0: 0 and 1 at the ends.
-float texture_coordinate(uint32_t i, uint32_t last, uint32_t side);
+// A texture coordinate so that 0 and 1 are the centres of the first and last of `pixels` pixels of a texture, which is where
+// renderers expect the pixels' values. 0 pixels: as it is.
+float texture_coordinate(float t, uint32_t pixels);
 
 }  // namespace gim

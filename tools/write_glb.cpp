@@ -31,9 +31,9 @@ struct Buffer {
     json textures = json::array();  // texture i is image i
     json pictures = json::array();
 
-    // A PNG of rgb pixels as a texture; its index.
-    size_t add_texture(const std::vector<uint8_t>& rgb, uint32_t side) {
-        const Bytes png = png_bytes(rgb.data(), side, side);
+    // A PNG of rgb pixels, as many as the plane has, as a texture; its index.
+    size_t add_texture(const std::vector<uint8_t>& rgb, const ImagePlane& size) {
+        const Bytes png = png_bytes(rgb.data(), size.columns, size.rows);
         views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", png.size()}});
         bytes.insert(bytes.end(), png.begin(), png.end());
         while (bytes.size() % 4 != 0) bytes.push_back(0);
@@ -78,16 +78,12 @@ std::vector<float> without_zeros(std::vector<float> normals) {
     return normals;
 }
 
-// texture: side of the texture in pixels; 0: none.
-std::vector<float> grid_texcoords(uint32_t side, uint32_t texture) {
-    std::vector<float> uv;
-    uv.reserve(size_t{2} * side * side);
-    const uint32_t last = side - 1;
-    for (uint32_t row = 0; row < side; ++row) {
-        for (uint32_t column = 0; column < side; ++column) {
-            uv.push_back(texture_coordinate(column, last, texture));
-            uv.push_back(texture_coordinate(row, last, texture));
-        }
+// For a texture of the plane's size; as they are where there is none.
+std::vector<float> texcoords_for(const DecodedImage& image, const GridMesh& grid, const ImagePlane& plane) {
+    std::vector<float> uv = at_samples(grid, image.grid_texcoords, 2);
+    for (size_t i = 0; i + 1 < uv.size(); i += 2) {
+        uv[i] = texture_coordinate(uv[i], plane.columns);
+        uv[i + 1] = texture_coordinate(uv[i + 1], plane.rows);
     }
     return uv;
 }
@@ -107,21 +103,21 @@ json plain_material() {
 }
 
 // Textures of an image's planes: adds texture coordinates and tangents to the attributes, and the textures to the material.
-void add_planes(const DecodedImage& image, Buffer& buffer, json& attributes, json& material) {
-    const uint32_t first = image.colors.side > 0 ? image.colors.side : image.normal_map.side;
-    attributes["TEXCOORD_0"] = buffer.add(grid_texcoords(image.side, first), 2, "VEC2", kFloat, kArrayBuffer);
-    if (image.colors.side > 0) {
+void add_planes(const DecodedImage& image, const GridMesh& grid, Buffer& buffer, json& attributes, json& material) {
+    const ImagePlane& first = image.colors.is_there() ? image.colors : image.normal_map;
+    attributes["TEXCOORD_0"] = buffer.add(texcoords_for(image, grid, first), 2, "VEC2", kFloat, kArrayBuffer);
+    if (image.colors.is_there()) {
         material["pbrMetallicRoughness"]["baseColorTexture"] = {
-            {"index", buffer.add_texture(color_pixels(image.colors), image.colors.side)}};
+            {"index", buffer.add_texture(color_pixels(image.colors), image.colors)}};
     }
-    if (image.normal_map.side > 0) {
+    if (image.normal_map.is_there()) {
         const std::vector<float> tangents = grid_tangents(image);
-        attributes["TANGENT"] = buffer.add(tangents, 4, "VEC4", kFloat, kArrayBuffer);
+        attributes["TANGENT"] = buffer.add(at_samples(grid, tangents, 4), 4, "VEC4", kFloat, kArrayBuffer);
         const std::vector<uint8_t> map = tangent_space_map(image, tangents, image.normal_map);
-        material["normalTexture"] = {{"index", buffer.add_texture(map, image.normal_map.side)}};
-        if (image.normal_map.side != first) {
+        material["normalTexture"] = {{"index", buffer.add_texture(map, image.normal_map)}};
+        if (image.normal_map.columns != first.columns || image.normal_map.rows != first.rows) {
             attributes["TEXCOORD_1"] =
-                buffer.add(grid_texcoords(image.side, image.normal_map.side), 2, "VEC2", kFloat, kArrayBuffer);
+                buffer.add(texcoords_for(image, grid, image.normal_map), 2, "VEC2", kFloat, kArrayBuffer);
             material["normalTexture"]["texCoord"] = 1;
         }
     }
@@ -137,16 +133,16 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
     json materials = json::array();
     for (size_t i = 0; i < images.size(); ++i) {
         const DecodedImage& image = images[i];
-        const std::vector<float>& positions = fused ? image.positions : image.grid;
+        const GridMesh grid = fused ? GridMesh{} : grid_mesh(image);
+        const std::vector<float> positions = fused ? image.positions : at_samples(grid, image.grid, 3);
         json attributes;
         json material = plain_material();
         attributes["POSITION"] = buffer.add(positions, 3, "VEC3", kFloat, kArrayBuffer);
         add_bounds(buffer.accessors.back(), positions);
         attributes["NORMAL"] =
-            buffer.add(without_zeros(fused ? image.normals : image.grid_normals), 3, "VEC3", kFloat, kArrayBuffer);
-        if (!fused) {
-            add_planes(image, buffer, attributes, material);
-        }
+            buffer.add(without_zeros(fused ? image.normals : at_samples(grid, image.grid_normals, 3)), 3, "VEC3",
+                       kFloat, kArrayBuffer);
+        if (!fused) add_planes(image, grid, buffer, attributes, material);
         // Images without textures share one.
         auto same = std::find(materials.begin(), materials.end(), material);
         if (same == materials.end()) {
@@ -154,7 +150,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
             same = materials.end() - 1;
         }
         const size_t indices =
-            buffer.add(fused ? image.triangles : image.grid_triangles, 1, "SCALAR", kUnsignedInt, kElementArrayBuffer);
+            buffer.add(fused ? image.triangles : grid.triangles, 1, "SCALAR", kUnsignedInt, kElementArrayBuffer);
         const std::string name = "image" + std::to_string(i);
         meshes.push_back({{"name", name},
                           {"primitives", json::array({{{"attributes", attributes},

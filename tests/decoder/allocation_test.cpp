@@ -75,7 +75,8 @@ TEST(Allocation, NoCallOfTheDecoderAllocates) {
         failures += gim_decode_positions(&info, b, size, 0, 0, x.data(), scratch.data(), room) != GIM_OK;
         failures += gim_decode_mesh(&info, b, size, 0, 0, x.data(), n.data(), uv.data(), t.data(), scratch.data(),
                                     room) != GIM_OK;
-        failures += gim_decode_grid(&info, b, size, 0, 0, x.data(), n.data(), t.data(), scratch.data(), room) != GIM_OK;
+        failures += gim_decode_grid(&info, b, size, 0, 0, x.data(), n.data(), uv.data(), t.data(), scratch.data(),
+                                    room) != GIM_OK;
         failures += gim_read_text(&info, b, size, text.data(), text.size(), &text_size, scratch.data(), room) != GIM_OK;
         gim_plane_info plane;
         if (gim_read_plane_info(&info, b, size, 0, GIM_PLANE_COLORS, 0, &plane) == GIM_OK)

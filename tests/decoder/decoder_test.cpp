@@ -44,7 +44,7 @@ TEST(Decoder, MeshAndGridAreTheSameSurface) {
             uv(f.level.vertex_count * 2);
         std::vector<uint32_t> grid_triangles(f.level.triangle_count * 3), triangles(f.level.triangle_count * 3);
         ASSERT_EQ(gim_decode_grid(&f.info, f.bytes.data(), f.bytes.size(), 0, 0, grid.data(), grid_normals.data(),
-                                  grid_triangles.data(), scratch.data(), f.level.scratch_size),
+                                  nullptr, grid_triangles.data(), scratch.data(), f.level.scratch_size),
                   GIM_OK);
         ASSERT_EQ(gim_decode_mesh(&f.info, f.bytes.data(), f.bytes.size(), 0, 0, mesh.data(), normals.data(), uv.data(),
                                   triangles.data(), scratch.data(), f.level.scratch_size),

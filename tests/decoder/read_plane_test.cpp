@@ -56,7 +56,7 @@ Plane decode(const Bytes& file, uint32_t kind, uint32_t level = 0, uint32_t imag
     if (plane.status == GIM_OK)
         plane.status = gim_read_plane_info(&info, file.data(), file.size(), image, kind, level, &plane.info);
     if (plane.status != GIM_OK) return plane;
-    plane.values.resize(size_t{plane.info.side} * plane.info.side * 3);
+    plane.values.resize(size_t{plane.info.width} * plane.info.width * 3);
     std::vector<std::max_align_t> scratch(plane.info.scratch_size / sizeof(std::max_align_t) + 1);
     plane.status = gim_decode_plane(&info, file.data(), file.size(), image, kind, level, plane.values.data(),
                                     scratch.data(), plane.info.scratch_size);
@@ -65,9 +65,9 @@ Plane decode(const Bytes& file, uint32_t kind, uint32_t level = 0, uint32_t imag
 
 TEST(ReadPlane, TellsSidesThatDifferFromTheImages) {
     const Bytes file = vector_file("planes-sphere-17");
-    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS).info.side, 33u);
-    EXPECT_EQ(decode(file, GIM_PLANE_COLORS).info.side, 9u);
-    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS, 2).info.side, 9u);
+    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS).info.width, 33u);
+    EXPECT_EQ(decode(file, GIM_PLANE_COLORS).info.width, 9u);
+    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS, 2).info.width, 9u);
     EXPECT_EQ(decode(file, GIM_PLANE_COLORS, 7).status, GIM_NO_SUCH_LEVEL);
 }
 
@@ -82,7 +82,7 @@ TEST(ReadPlane, AbsentPlanesAreToldByTheIndexAlone) {
               GIM_NEED_MORE_INPUT);
     EXPECT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 2, GIM_PLANE_COLORS, 0, &plane), GIM_BAD_ARGUMENT);
     EXPECT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 0, 2, 0, &plane), GIM_BAD_ARGUMENT);
-    EXPECT_EQ(decode(file, GIM_PLANE_COLORS, 0, 1).info.side, 5u);
+    EXPECT_EQ(decode(file, GIM_PLANE_COLORS, 0, 1).info.width, 5u);
 }
 
 TEST(ReadPlane, NormalsAreUnitAndColorsBounded) {
@@ -101,7 +101,7 @@ TEST(ReadPlane, SamplesOfOneSurfacePointAreEqualAtEveryLevel) {
         const Plane plane = decode(file, GIM_PLANE_NORMALS, level);
         ASSERT_EQ(plane.status, GIM_OK);
         // Every side is folded at its middle: sample t of a side is sample last - t.
-        const uint32_t last = plane.info.side - 1;
+        const uint32_t last = plane.info.width - 1;
         for (uint32_t s = 0; s < 4; ++s) {
             for (uint32_t t = 0; t <= last; ++t) {
                 const auto at = [&](uint32_t k) {
@@ -120,7 +120,7 @@ TEST(ReadPlane, RefusesSmallScratchAndNullPointers) {
     gim_plane_info plane;
     ASSERT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
     ASSERT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 0, 1, 0, &plane), GIM_OK);
-    std::vector<float> values(size_t{plane.side} * plane.side * 3);
+    std::vector<float> values(size_t{plane.width} * plane.height * 3);
     std::vector<std::max_align_t> scratch(plane.scratch_size / sizeof(std::max_align_t) + 1);
     const auto call = [&](float* to, void* memory, size_t size) {
         return gim_decode_plane(&info, file.data(), file.size(), 0, 1, 0, to, memory, size);

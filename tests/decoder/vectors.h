@@ -54,7 +54,7 @@ inline gim_status decode_plane(const gim_info& info, const std::vector<uint8_t>&
         if (s == GIM_NO_SUCH_PLANE) return GIM_OK;
         if (s != GIM_OK) return s;
         out->prefix = out->prefix > p.prefix_size ? out->prefix : p.prefix_size;
-        std::vector<float> values(size_t{p.side} * p.side * 3);
+        std::vector<float> values(size_t{p.width} * p.height * 3);
         std::vector<std::max_align_t> scratch(p.scratch_size / sizeof(std::max_align_t) + 1);
         s = gim_decode_plane(&info, file.data(), file.size(), image, kind, level, values.data(), scratch.data(),
                              p.scratch_size);

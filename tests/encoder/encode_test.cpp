@@ -103,7 +103,7 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
         EXPECT_NEAR(levels[level].psnr, comparison.value().psnr, 0.1);
         EXPECT_LE(info.level_psnr[level], levels[level].psnr);
         EXPECT_GT(info.level_psnr[level], levels[level].psnr - 0.5);
-        EXPECT_EQ(levels[level].side, (64u >> level) + 1);
+        EXPECT_EQ(levels[level].width, (64u >> level) + 1);
         gim_level_info shape;
         ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape), GIM_OK);
         EXPECT_EQ(levels[level].prefix_bytes, shape.prefix_size);

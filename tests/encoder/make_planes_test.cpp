@@ -48,9 +48,9 @@ Decoded decode(const std::vector<uint8_t>& file, uint32_t kind) {
     EXPECT_EQ(gim_read_level_info(&info, file.data(), file.size(), 0, 0, &level), GIM_OK);
     EXPECT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 0, kind, 0, &plane), GIM_OK);
     d.side = level.side;
-    d.plane_side = plane.side;
+    d.plane_side = plane.width;
     d.grid.resize(size_t{level.side} * level.side * 3);
-    d.values.resize(size_t{plane.side} * plane.side * 3);
+    d.values.resize(size_t{plane.width} * plane.height * 3);
     std::vector<std::max_align_t> scratch(std::max(level.scratch_size, plane.scratch_size) / sizeof(std::max_align_t) +
                                           1);
     EXPECT_EQ(
@@ -88,7 +88,7 @@ TEST(MakePlanes, NormalMapOfASphereIsWithinADegreeOfItsNormals) {
     EXPECT_LT(mean_angle_to_sphere(decode(encoded.value().bytes, GIM_PLANE_NORMALS)), 1.0);
     ASSERT_EQ(encoded.value().report.planes.size(), 1u);
     const PlaneReport& report = encoded.value().report.planes[0];
-    EXPECT_EQ(report.side, 129u);
+    EXPECT_EQ(report.width, 129u);
     EXPECT_GT(report.bytes, 0u);
     EXPECT_LT(report.mean_angle, 1.0);
 }
@@ -159,7 +159,7 @@ TEST(MakePlanes, TexturesAreResampled) {
     const auto encoded = encode(textured_sphere(), options);
     ASSERT_TRUE(encoded.ok()) << encoded.error().message;
     ASSERT_EQ(encoded.value().report.planes.size(), 1u);
-    EXPECT_EQ(encoded.value().report.planes[0].side, 129u);
+    EXPECT_EQ(encoded.value().report.planes[0].width, 129u);
     EXPECT_GT(encoded.value().report.planes[0].psnr, 30);
 }
 

@@ -405,7 +405,7 @@ TEST_F(Cli, WrongUsageEndsWithStatusTwo) {
                                                {"encode", mesh_path(), out, "--bytes", "0"},
                                                {"encode", mesh_path(), out, "--quality", "101"},
                                                {"encode", mesh_path(), out, "--layout", "spiral"},
-                                               {"encode", mesh_path(), out, "--charts", "5"},
+                                               {"encode", mesh_path(), out, "--charts", "5000"},
                                                {"encode", mesh_path(), out, "--fit", "tight"},
                                                {"encode", mesh_path(), out, "--threads", "-1"},
                                                {"decode", gim_path(), folder.file("a.xyz")},

@@ -123,7 +123,7 @@ TEST(Colors, AFileThatClaimsHugeTexturesOrBadIndicesIsReadAllTheSame) {
 
 // Colours that tell the place: red by row, green by column.
 ImagePlane ramp(uint32_t side) {
-    ImagePlane plane{side, {}};
+    ImagePlane plane{side, side, {}};
     for (uint32_t r = 0; r < side; ++r) {
         for (uint32_t c = 0; c < side; ++c) {
             const auto last = static_cast<float>(side - 1);
@@ -142,8 +142,8 @@ nlohmann::json glb_document(const Bytes& glb) {
 TEST(Planes, GlbCarriesThemAsTexturesOfEachImage) {
     std::vector<DecodedImage> images = {torus_image(9), torus_image(5, 10), torus_image(5, 20)};
     images[0].colors = ramp(17);
-    images[0].normal_map = {9, images[0].grid_normals};
-    images[1].normal_map = {5, images[1].grid_normals};
+    images[0].normal_map = {9, 9, images[0].grid_normals};
+    images[1].normal_map = {5, 5, images[1].grid_normals};
     const Result<Bytes> glb = write_surface(SurfaceFormat::kGlb, images);
     ASSERT_TRUE(glb.ok());
     const nlohmann::json j = glb_document(glb.value());
@@ -206,7 +206,7 @@ TEST(Planes, PlyAndObjGiveColorsToTheirVertices) {
 
 TEST(Planes, ANormalMapThatAgreesWithTheSurfaceIsFlat) {
     const DecodedImage image = torus_image(17);
-    const std::vector<uint8_t> rgb = tangent_space_map(image, grid_tangents(image), {17, image.grid_normals});
+    const std::vector<uint8_t> rgb = tangent_space_map(image, grid_tangents(image), {17, 17, image.grid_normals});
     for (size_t i = 0; i < rgb.size(); i += 3) {
         EXPECT_NEAR(rgb[i], 127.5, 1);
         EXPECT_NEAR(rgb[i + 1], 127.5, 1);
@@ -217,7 +217,7 @@ TEST(Planes, ANormalMapThatAgreesWithTheSurfaceIsFlat) {
 TEST(Planes, TangentSpaceGivesBackTheNormalsThatWentIn) {
     const DecodedImage image = torus_image(33);
     const std::vector<float> tangents = grid_tangents(image);
-    ImagePlane bumpy{33, image.grid_normals};
+    ImagePlane bumpy{33, 33, image.grid_normals};
     for (size_t i = 0; i < bumpy.values.size(); i += 3) {
         Vec3 n(bumpy.values[i], bumpy.values[i + 1], bumpy.values[i + 2]);
         n = (n + 0.4 * Vec3(std::sin(0.1 * double(i)), std::cos(0.3 * double(i)), std::sin(0.7 * double(i))))
@@ -239,7 +239,7 @@ TEST(Planes, TangentSpaceGivesBackTheNormalsThatWentIn) {
 }
 
 TEST(Planes, SixteenBitPngHoldsTheNormals) {
-    ImagePlane plane{5, {}};
+    ImagePlane plane{5, 5, {}};
     for (int i = 0; i < 25; ++i)
         for (const float v : {-1.0f, 1.0f, static_cast<float>(i) / 25}) plane.values.push_back(v);
     const Result<Bytes> png = write_normal_png(plane);
@@ -283,7 +283,7 @@ TEST(Planes, TheWholeWayThroughTheProgram) {
               0);
     const auto report = nlohmann::json::parse(test::load_text(folder.file("r.json")));
     ASSERT_EQ(report["planes"].size(), 2u);
-    EXPECT_EQ(report["planes"][0]["side"], 129);
+    EXPECT_EQ(report["planes"][0]["width"], 129);
     EXPECT_GT(report["planes"][1]["psnr"], 35);
     ASSERT_EQ(run({"decode", gim, folder.file("o.obj"), "--normal-map", folder.file("n.png"), "--color-map",
                    folder.file("c.png")}),

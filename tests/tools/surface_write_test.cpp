@@ -179,12 +179,12 @@ TEST(SurfaceWrite, StlHeaderIsNotMistakenForText) {
 }
 
 void expect_exr_plane(Imf::InputPart& part, const std::string& channel, const DecodedImage& image, size_t k) {
-    std::vector<float> plane(size_t{image.side} * image.side, -1.0F);
+    std::vector<float> plane(size_t{image.columns} * image.columns, -1.0F);
     Imf::FrameBuffer frame;
     frame.insert(channel, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(plane.data()), sizeof(float),
-                                     image.side * sizeof(float)));
+                                     image.columns * sizeof(float)));
     part.setFrameBuffer(frame);
-    part.readPixels(0, static_cast<int>(image.side) - 1);
+    part.readPixels(0, static_cast<int>(image.columns) - 1);
     for (size_t i = 0; i < plane.size(); ++i) {
         ASSERT_EQ(plane[i], k < 3 ? image.grid[3 * i + k] : 1.0F) << channel << " " << i;
     }
@@ -202,7 +202,7 @@ TEST(SurfaceWrite, ExrHoldsTheSamplesBitForBit) {
         for (int p = 0; p < file.parts(); ++p) {
             Imf::InputPart part(file, p);
             const DecodedImage& image = images[static_cast<size_t>(p)];
-            EXPECT_EQ(part.header().dataWindow().max.x, static_cast<int>(image.side) - 1);
+            EXPECT_EQ(part.header().dataWindow().max.x, static_cast<int>(image.columns) - 1);
             for (const char* name : {"X", "Y", "Z", "mask"}) {
                 const Imf::Channel* channel = part.header().channels().findChannel(name);
                 ASSERT_NE(channel, nullptr) << name;

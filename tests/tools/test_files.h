@@ -58,7 +58,7 @@ inline std::string load_text(const std::string& path) {
 // A torus: opposite sides of the square are one, so (side-1)^2 vertices are shared by 2*(side-1)^2 triangles.
 inline DecodedImage torus_image(uint32_t side, float shift = 0) {
     DecodedImage image;
-    image.side = side;
+    image.columns = image.rows = side;
     const uint32_t n = side - 1;
     const auto place = [&](uint32_t row, uint32_t column, std::vector<float>& positions, std::vector<float>& normals) {
         const double u = 2 * std::numbers::pi * (row % n) / n;
@@ -72,7 +72,11 @@ inline DecodedImage torus_image(uint32_t side, float shift = 0) {
         }
     };
     for (uint32_t row = 0; row < side; ++row) {
-        for (uint32_t column = 0; column < side; ++column) place(row, column, image.grid, image.grid_normals);
+        for (uint32_t column = 0; column < side; ++column) {
+            place(row, column, image.grid, image.grid_normals);
+            image.grid_texcoords.push_back(static_cast<float>(column) / static_cast<float>(n));
+            image.grid_texcoords.push_back(static_cast<float>(row) / static_cast<float>(n));
+        }
     }
     for (uint32_t row = 0; row < n; ++row) {
         for (uint32_t column = 0; column < n; ++column) {

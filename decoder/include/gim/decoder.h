@@ -100,30 +100,33 @@ typedef struct gim_level_info {
 GIM_API gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                        uint32_t level, gim_level_info* level_info);
 
-/* Decodes one level of one image: side*side*3 floats, row-major, object units, cut fused (equivalent boundary samples
- * are bit-equal and the correction is diffused into the interior). Reads only the first prefix_size bytes. scratch:
- * scratch_size bytes, 16-byte aligned; contents undefined afterwards. On failure positions are unspecified. Cost
- * O(side^2). The floats are the same bits on every platform. */
+/* Decodes one level of one image: width*height*3 floats, row-major, object units, seams closed (samples that are one surface
+ * point are bit-equal and the correction is diffused into the interior); NaN where GIM_LAYOUT_MCGIM leaves samples
+ * undefined. Of that layout the grid of level 0 is the rectangle that the charts are packed into; coarser ones lie beside
+ * each other in a grid of their own. Reads only the first prefix_size bytes. scratch: scratch_size bytes, 16-byte aligned;
+ * contents undefined afterwards. On failure positions are unspecified. Cost O(samples). The floats are the same bits on
+ * every platform. */
 GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                         uint32_t level, float* positions, void* scratch, size_t scratch_size);
 
-/* The same level as an indexed triangle mesh, watertight across the cut.
- * positions  vertex_count*3 floats, object units
- *            the vertices of the boundary ring come first, then the inner samples row by row
- * normals    vertex_count*3 floats, unit length (central differences; zero where undefined), or NULL
- * texcoords  vertex_count*2 floats in [0,1]: u = column / (side-1), v = row / (side-1) of the implicit parametrization;
- * a vertex on the cut has that of its first sample; or NULL triangles  triangle_count*3 indices, counter-clockwise seen
- * from outside; quads are split along the shorter diagonal, except where that would make two edges one (spec,
- * "Surface"); or NULL */
+/* The same level as an indexed triangle mesh, watertight across the seams.
+ * positions  vertex_count*3 floats, object units. GIM_LAYOUT_GIM: the vertices of the boundary ring come first, then the
+ *            inner samples row by row; GIM_LAYOUT_MCGIM: in the order of their first samples, chart after chart
+ * normals    vertex_count*3 floats, unit length, zero where undefined; or NULL
+ * texcoords  vertex_count*2 floats: u = column / (width-1), v = row / (height-1) of the implicit parametrization, those of
+ *            level 0 at every level; a vertex on a seam has that of its first sample; or NULL
+ * triangles  triangle_count*3 indices, counter-clockwise seen from outside; quads are split along the shorter diagonal,
+ *            except where that would make two edges one (spec, "Surface", "Charts"); or NULL */
 GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                    float* positions, float* normals, float* texcoords, uint32_t* triangles,
                                    void* scratch, size_t scratch_size);
 
-/* The same level as a grid mesh for texturing: side*side vertices in row-major order, samples on the cut repeated with
- * equal positions and normals. triangles as in gim_decode_mesh, indexing samples. normals and triangles may be NULL. */
+/* The same level as a grid mesh for texturing: width*height vertices in row-major order, samples on seams repeated with
+ * equal positions and normals; undefined ones are in no triangle. The rest as in gim_decode_mesh, triangles indexing
+ * samples. normals, texcoords and triangles may be NULL. */
 GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                                   float* positions, float* normals, uint32_t* triangles, void* scratch,
-                                   size_t scratch_size);
+                                   float* positions, float* normals, float* texcoords, uint32_t* triangles,
+                                   void* scratch, size_t scratch_size);
 
 /* Attribute planes: what a surface has besides its shape, as images on the same square at a resolution of their own. Sample
  * (row, column) of a plane of side s belongs to the surface point at row/(s-1), column/(s-1) of the square. Samples of one
@@ -132,7 +135,7 @@ GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size
  *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB */
 enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
 typedef struct gim_plane_info {
-    uint32_t side;           /* samples per side at this level, 2^j + 1; independent of the image's side */
+    uint32_t width, height;  /* samples at this level; squares: 2^j + 1 each, independent of the image's side */
     uint32_t coarsest_level; /* of the plane: level L has every 2^L-th sample's place */
     float quantizer;       /* quantizer step: colours in 1/255, normals in 1/1024 of a unit vector as gim writes them */
     uint64_t stream_size;  /* bytes of this image's plane in the file */
@@ -171,7 +174,7 @@ GIM_API gim_status gim_read_text(const gim_info* info, const void* bytes, size_t
 
 /* The gluing of an image's ring at a level, for tools: class_of has 4*(side-1) entries, equal numbers for samples that
  * are one surface point (ring order: along row 0, down the last column, back along the last row, up column 0). NULL:
- * not wanted. */
+ * not wanted; it must be NULL where the layout is not GIM_LAYOUT_GIM. */
 GIM_API gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                   uint32_t* class_of, uint32_t* path_count);
 

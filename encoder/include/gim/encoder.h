@@ -131,6 +131,9 @@ struct EncodeOptions {
     Layout layout = Layout::kGim;
     uint32_t side = 257;      // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory.
                               // Of several components the largest gets it, the others less, by their area
+    uint32_t samples = 66049;  // kMcgim: bound on width * height
+    uint32_t charts = 0;       // kMcgim: how many are asked for, 0: chosen by the shape; more come out where topology or
+                               // flattening needs them
     uint32_t node_side = 17;  // grid on which cut-nodes lie, so that all coarser levels down to it stay closed;
                               // made finer by the encoder where the cut has too many nodes for it
     uint32_t bits = 12;       // quantizer: bits per coordinate of the bounding box, 8..20
@@ -154,7 +157,7 @@ struct EncodeOptions {
 // One level of the file: all images, each at this level or at the coarsest that its seams can close.
 struct LevelReport {
     uint32_t level = 0;                    // 0: full resolution
-    uint32_t side = 0;                     // of the largest image
+    uint32_t width = 0, height = 0;        // of the largest image
     uint64_t vertices = 0, triangles = 0;  // of the decoded surface
     uint64_t prefix_bytes = 0;             // of the file, that this level needs
     double psnr = 0;                       // dB, decoded surface against the input mesh
@@ -169,8 +172,8 @@ struct StageTime {
 struct PlaneReport {
     enum class Kind { kNormals, kColors };
     Kind kind = Kind::kNormals;
-    uint32_t side = 0;   // of the largest image
-    uint64_t bytes = 0;  // of its chunk
+    uint32_t width = 0, height = 0;  // of the largest image
+    uint64_t bytes = 0;              // of its chunk
     // Decoded plane on the decoded surface against the input, over the input's surface.
     double mean_angle = 0;  // kNormals: degrees
     double psnr = 0;        // kColors: dB of the sRGB values
@@ -181,8 +184,15 @@ struct EncodeReport {
     uint64_t input_vertices = 0, input_triangles = 0;     // as read
     uint64_t welded_vertices = 0, removed_triangles = 0;  // by cleaning
     TopologySummary topology;                             // of the cleaned mesh
-    uint32_t images = 0;                                  // one per component
-    uint32_t side = 0, node_side = 0, cut_paths = 0;      // side: of the largest; paths: of all
+    Layout layout = Layout::kGim;                         // that was used
+    uint32_t images = 0;                                  // kGim: one per component; else 1
+    uint32_t width = 0, height = 0;                       // of the largest image
+    uint64_t samples = 0;                                 // of all images
+    uint32_t side = 0, node_side = 0;                     // kGim: side of the largest
+    uint32_t cut_paths = 0;                               // of all images
+    uint32_t charts = 0;                                  // kMcgim
+    uint64_t defined_samples = 0;                         // kMcgim
+    double packing_efficiency = 0;                        // kMcgim: defined_samples / samples
     double cut_length = 0;                                // object units
     double stretch_efficiency = 0;                    // 1 / (normalised L2 stretch)^2, 0..1, 1 = uniform and isotropic
     uint64_t folds = 0, folds_before_fit = 0;         // image faces that look away from the input's surface

@@ -1,0 +1,52 @@
+#include "encoder/encode_charts.h"
+
+#include <utility>
+
+#include "encoder/multi_chart.h"
+#include "encoder/result.h"
+#include "encoder/write_charts.h"
+
+namespace gim {
+
+namespace {
+
+// Coarser levels than this are never asked for: charts have too few samples long before.
+constexpr uint32_t kMostLevels = 8;
+
+}  // namespace
+
+Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock, EncodeReport& report) {
+    MultiChartOptions chart_options;
+    if (options.charts > 0) chart_options.charts = options.charts;
+    chart_options.samples = options.samples;
+    chart_options.seed = options.seed;
+    chart_options.threads = options.threads;
+    GIM_TRY(multi_chart, make_multi_chart_image(mesh, chart_options, clock));
+    report.stretch_efficiency = multi_chart.stretch_efficiency;
+    clock.begin(Stage::kSample);
+    return make_chart_images(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
+                             kMostLevels, options.threads);
+}
+
+CodingJob code_charts(const ChartImages& charts, EncodeReport& report) {
+    report.layout = Layout::kMcgim;
+    report.images = 1;
+    report.width = charts.width;
+    report.height = charts.height;
+    report.samples = charts.sample_count();
+    report.defined_samples = charts.defined_count();
+    report.charts = static_cast<uint32_t>(charts.charts.size());
+    report.cut_paths = static_cast<uint32_t>(charts.mates.size());
+    report.packing_efficiency = static_cast<double>(report.defined_samples) / static_cast<double>(report.samples);
+    CodingJob job;
+    job.make_writer = [&charts](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
+        GIM_TRY(writer, ChartFileWriter::create(charts, parameters));
+        return std::unique_ptr<FileWriter>(new ChartFileWriter(std::move(writer)));
+    };
+    job.make_planes = [](const PlaneMaker&) -> Result<std::vector<CodedPlane>> {
+        return Error{Stage::kPlanes, "normal maps and colours of charts are not there yet; ask for --colors 0"};
+    };
+    return job;
+}
+
+}  // namespace gim
