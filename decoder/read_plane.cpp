@@ -4,6 +4,7 @@
 #include "decoder/image_decoder.h"
 #include "decoder/reopen.h"
 #include "decoder/vector3.h"
+#include "format/chart_table.h"
 #include "format/plane_code.h"
 #include "gim/decoder.h"
 
@@ -16,14 +17,23 @@ static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1);
 struct PlaneLevel {
     PlaneChunk chunk;
     PyramidShape shape;
+    bool has_ring = false;  // squares, whose ring is closed
     SeamTable seams;
-    uint32_t side = 0, coarsest = 0;
+    uint32_t width = 0, height = 0, coarsest = 0;
     uint64_t prefix = 0;
 };
 
-size_t plane_scratch_size(uint32_t side) {
+PlaneWorkspace lay_out(const PlaneLevel& plane, Arena* arena) {
+    if (plane.has_ring) return lay_out_plane(plane.width, arena);
+    PlaneWorkspace ws;
+    lay_out_coder(plane.width, arena, &ws.pyramid);
+    lay_out_planes(plane.width, plane.height, arena, &ws.pyramid);
+    return ws;
+}
+
+size_t plane_scratch_size(const PlaneLevel& plane) {
     Arena arena(nullptr);
-    (void)lay_out_plane(side, &arena);
+    (void)lay_out(plane, &arena);
     return arena.used();
 }
 
@@ -41,16 +51,29 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     Header header;
     if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return s;
     if (image >= header.image_count() || kind >= kPlaneKinds) return Status::kBadArgument;
-    if (header.layout != FileLayout::kSquares) return Status::kNoSuchPlane;
     Chunk chunk;
     uint64_t offset = 0;
     if (!find_plane(header, kind, &chunk, &offset)) return Status::kNoSuchPlane;
-    if (Status s = read_seams(header, file, image, &out->seams); s != Status::kOk) return s;
+    out->has_ring = header.layout == FileLayout::kSquares;
+    if (out->has_ring) {
+        if (Status s = read_seams(header, file, image, &out->seams); s != Status::kOk) return s;
+    }
     std::span<const uint8_t> payload;
     if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
-    if (Status s = parse_plane(payload, header.image_count(), image, limits_of(&info->limits), &out->chunk);
-        s != Status::kOk)
+    if (Status s = parse_plane(payload, header, image, limits_of(&info->limits), &out->chunk); s != Status::kOk)
         return s;
+    out->prefix = offset + chunk.size;
+    const uint32_t exponent = out->chunk.side_exponents[image];
+    if (!out->has_ring) {
+        const auto width = static_cast<uint32_t>(chart_plane_side(header.width, exponent)),
+                   height = static_cast<uint32_t>(chart_plane_side(header.height, exponent));
+        out->coarsest = halvings(width, height);
+        if (level > out->coarsest) return Status::kNoSuchLevel;
+        out->width = halved(width, level);
+        out->height = halved(height, level);
+        out->shape = {width, height, out->coarsest, level, out->chunk.quantizer, 0, false};
+        return Status::kOk;
+    }
 
     // The ring's classes exist on grids at least as fine as the seams' own.
     const uint32_t side = out->chunk.side(image);
@@ -58,9 +81,8 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     if (side < least) return Status::kMalformed;
     while (((side - 1) >> (out->coarsest + 1)) + 1 >= least) ++out->coarsest;
     if (level > out->coarsest) return Status::kNoSuchLevel;
-    out->side = ((side - 1) >> level) + 1;
-    out->shape = square_shape(out->chunk.side_exponents[image], level, out->chunk.quantizer, 0);
-    out->prefix = offset + chunk.size;
+    out->width = out->height = ((side - 1) >> level) + 1;
+    out->shape = square_shape(exponent, level, out->chunk.quantizer, 0);
     return Status::kOk;
 }
 
@@ -74,12 +96,13 @@ Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace
     new (ws.pyramid.models) BandModels();
     if (Status s = decode_stream(decoder, ws.pyramid, plane.chunk.stream, plane.shape.level); s != Status::kOk)
         return s;
-    const uint32_t side = plane.side;
-    const size_t count = size_t{side} * side * 3;
+    const size_t count = size_t{plane.width} * plane.height * 3;
     const float* samples = to_units<float>(ws.pyramid.images[0], count);
     std::copy_n(samples, count, values);
-    ring_classes(plane.seams, side, {ws.class_of, ring_length(side)});
-    average_classes(side, ws.class_of, ring_class_count(plane.seams, side), values, ws.fuse);
+    if (plane.has_ring) {
+        ring_classes(plane.seams, plane.width, {ws.class_of, ring_length(plane.width)});
+        average_classes(plane.width, ws.class_of, ring_class_count(plane.seams, plane.width), values, ws.fuse);
+    }
     for (size_t i = 0; i < count; i += 3)
         kind == GIM_PLANE_NORMALS ? normalize(values + i) : finish_color(values + i);
     return Status::kOk;
@@ -98,12 +121,13 @@ gim_status gim_read_plane_info(const gim_info* info, const void* bytes, size_t s
     PlaneLevel plane;
     if (Status s = open_plane(info, bytes, size, image, kind, level, &plane); s != Status::kOk) return code(s);
     *plane_info = {};
-    plane_info->width = plane_info->height = plane.side;
+    plane_info->width = plane.width;
+    plane_info->height = plane.height;
     plane_info->coarsest_level = plane.coarsest;
     plane_info->quantizer = plane.chunk.quantizer;
     plane_info->stream_size = plane.chunk.stream.size();
     plane_info->prefix_size = plane.prefix;
-    plane_info->scratch_size = plane_scratch_size(plane.side);
+    plane_info->scratch_size = plane_scratch_size(plane);
     return GIM_OK;
 }
 
@@ -113,8 +137,8 @@ gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size
     PlaneLevel plane;
     if (Status s = open_plane(info, bytes, size, image, kind, level, &plane); s != Status::kOk) return code(s);
     if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return GIM_BAD_ARGUMENT;
-    if (scratch_size < plane_scratch_size(plane.side)) return GIM_SCRATCH_TOO_SMALL;
+    if (scratch_size < plane_scratch_size(plane)) return GIM_SCRATCH_TOO_SMALL;
     Arena arena(scratch);
-    const PlaneWorkspace ws = lay_out_plane(plane.side, &arena);
+    const PlaneWorkspace ws = lay_out(plane, &arena);
     return code(decode_plane(plane, kind, ws, values));
 }

@@ -178,8 +178,7 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
     });
 
     ChartImages result;
-    result.width = image.width();
-    result.height = image.height();
+    result.image = image;
     for (const SeamPath& path : image.seams.paths) result.mates.push_back(path.mate);
     std::vector<Placement> places;
     for (size_t c = 0; c < count; ++c) {

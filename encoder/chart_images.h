@@ -27,7 +27,7 @@ struct LevelBorders {
 };
 
 struct ChartImages {
-    uint32_t width = 0, height = 0;              // of the rectangle
+    MultiChartImage image;                       // the charts in their rectangle
     std::vector<ChartBox> charts;
     std::vector<uint32_t> mates;                 // per path, chart after chart
     std::vector<std::vector<Vec3>> positions;    // per chart, its box row by row; zero where undefined
@@ -35,7 +35,7 @@ struct ChartImages {
     std::vector<LevelBorders> levels;            // finest first; at least one
 
     uint64_t defined_count() const;
-    uint64_t sample_count() const { return uint64_t{width} * height; }
+    uint64_t sample_count() const { return uint64_t{image.width()} * image.height(); }
 };
 
 // In:  the finished image, what it was made from, and the topology that every level must have.

@@ -31,8 +31,8 @@ Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, 
 CodingJob code_charts(const ChartImages& charts, EncodeReport& report) {
     report.layout = Layout::kMcgim;
     report.images = 1;
-    report.width = charts.width;
-    report.height = charts.height;
+    report.width = charts.image.width();
+    report.height = charts.image.height();
     report.samples = charts.sample_count();
     report.defined_samples = charts.defined_count();
     report.charts = static_cast<uint32_t>(charts.charts.size());
@@ -43,9 +43,7 @@ CodingJob code_charts(const ChartImages& charts, EncodeReport& report) {
         GIM_TRY(writer, ChartFileWriter::create(charts, parameters));
         return std::unique_ptr<FileWriter>(new ChartFileWriter(std::move(writer)));
     };
-    job.make_planes = [](const PlaneMaker&) -> Result<std::vector<CodedPlane>> {
-        return Error{Stage::kPlanes, "normal maps and colours of charts are not there yet; ask for --colors 0"};
-    };
+    job.make_planes = [&charts](const PlaneMaker& maker) { return maker.make(charts.image); };
     return job;
 }
 

@@ -15,10 +15,10 @@
 namespace gim {
 
 // values: rows * columns triples, of which those of defined samples stay. finest: the last threshold, of a coefficient of
-// unit norm, in units. Cost: some 200 transforms.
+// unit norm, in units. rounds: 24 give 5 % more bytes, 400 give 3 % less. Cost: two transforms each.
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet::Sample> values,
                                                    const std::vector<uint8_t>& defined, uint32_t columns, uint32_t rows,
-                                                   uint32_t steps, float finest);
+                                                   uint32_t steps, float finest, int rounds = 100);
 
 }  // namespace gim

@@ -9,8 +9,10 @@
 #include "encoder/code_bands.h"
 #include "encoder/input_colors.h"
 #include "encoder/parallel.h"
+#include "encoder/extend_chart.h"
 #include "encoder/sample_planes.h"
 #include "encoder/surface_samples.h"
+#include "format/chart_table.h"
 #include "format/plane_code.h"
 #include "format/sideband_code.h"
 #include "gim/decoder.h"
@@ -257,6 +259,20 @@ struct PlaneMaker::Impl {
     }
 };
 
+Result<std::vector<CodedPlane>> code_to_budget(const std::vector<AnalysedPlane>& planes, const EncodeOptions& options) {
+    const RateTarget& rate = options.rate;
+    for (double quality = plane_quality(options);; quality -= 5) {
+        std::vector<CodedPlane> coded;
+        size_t bytes = 0;
+        for (const AnalysedPlane& plane : planes) {
+            coded.push_back(code(plane, quality));
+            bytes += coded.back().payload.size();
+        }
+        const bool fits = rate.kind != RateTarget::Kind::kBytes || 2.0 * static_cast<double>(bytes) <= rate.value;
+        if (fits || quality <= 0) return coded;
+    }
+}
+
 PlaneMaker::PlaneMaker(const Mesh& clean, const TriangleMesh& input, const EncodeOptions& options)
     : impl_(new Impl{clean, input, options, gim::color_side(input, options), {}, {}}) {
     if (impl_->kinds().empty()) return;
@@ -270,17 +286,39 @@ bool PlaneMaker::wants_any() const { return impl_->source.has_value(); }
 Result<std::vector<CodedPlane>> PlaneMaker::make(std::span<const GeometryImage> images) const {
     if (!wants_any()) return std::vector<CodedPlane>{};
     GIM_TRY(planes, impl_->analyse_all(images));
-    const RateTarget& rate = impl_->options.rate;
-    for (double quality = plane_quality(impl_->options);; quality -= 5) {
-        std::vector<CodedPlane> coded;
-        size_t bytes = 0;
-        for (const AnalysedPlane& plane : planes) {
-            coded.push_back(code(plane, quality));
-            bytes += coded.back().payload.size();
+    return code_to_budget(planes, impl_->options);
+}
+
+Result<std::vector<CodedPlane>> PlaneMaker::make(const MultiChartImage& image) const {
+    if (!wants_any()) return std::vector<CodedPlane>{};
+    std::vector<AnalysedPlane> planes;
+    AttributeSource::Texels texels;
+    for (const Kind kind : impl_->kinds()) {
+        const double per_sample = impl_->side_of(kind) / std::sqrt(double(image.width()) * image.height());
+        const auto exponent = static_cast<uint32_t>(
+            std::clamp(std::lround(std::log2(per_sample)), 0l, static_cast<long>(kMaxTexelExponent)));
+        if (planes.empty() || planes.back().side_exponents[0] != exponent) {
+            GIM_TRY(found, impl_->source->locate(image, exponent));
+            texels = std::move(found);
         }
-        const bool fits = rate.kind != RateTarget::Kind::kBytes || 2.0 * static_cast<double>(bytes) <= rate.value;
-        if (fits || quality <= 0) return coded;
+        const auto columns = static_cast<uint32_t>(chart_plane_side(image.width(), exponent)),
+                   rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
+        const std::vector<float> values = impl_->samples(kind, texels.points);
+        std::vector<float> plane(size_t{columns} * rows * 3, 0.0f);
+        std::vector<uint8_t> defined(plane.size() / 3, 0);
+        for (size_t i = 0; i < texels.texels.size(); ++i) {
+            defined[texels.texels[i]] = 1;
+            std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * i), 3,
+                        plane.begin() + static_cast<ptrdiff_t>(3 * size_t{texels.texels[i]}));
+        }
+        const uint32_t steps = halvings(columns, rows);
+        constexpr int kRounds = 12;
+        plane = extend_chart<Irreversible97>(std::move(plane), defined, columns, rows, steps,
+                                             quantizer_of(kind, plane_quality(impl_->options)), kRounds);
+        planes.push_back({kind, {static_cast<uint8_t>(exponent)}, {}});
+        planes.back().pyramids.push_back(analyse<Irreversible97>(std::move(plane), columns, rows, steps));
     }
+    return code_to_budget(planes, impl_->options);
 }
 
 Result<std::vector<PlaneReport>> PlaneMaker::measure(std::span<const uint8_t> file) const {

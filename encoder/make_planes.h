@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/geometry_image.h"
+#include "encoder/multi_chart_image.h"
 #include "encoder/result.h"
 #include "encoder/write_gim.h"
 #include "gim/encoder.h"
@@ -25,6 +26,9 @@ class PlaneMaker {
     // Planes of all images, one chunk per kind. A --bytes target gets planes of half of its bytes at most, in lower quality
     // if need be. O(texels log F).
     Result<std::vector<CodedPlane>> make(std::span<const GeometryImage> images) const;
+
+    // Planes of a multi-chart image, as fine as `side` samples a side would be on a square of as many samples.
+    Result<std::vector<CodedPlane>> make(const MultiChartImage& image) const;
 
     // The planes of a complete file against the input.
     Result<std::vector<PlaneReport>> measure(std::span<const uint8_t> file) const;

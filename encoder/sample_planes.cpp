@@ -6,7 +6,9 @@
 
 #include "encoder/grid_surface.h"
 #include "encoder/parallel.h"
+#include "encoder/stretch.h"
 #include "format/cell.h"
+#include "format/plane_code.h"
 
 namespace gim {
 
@@ -155,26 +157,94 @@ void AttributeSource::keep_to_the_right_side(const Vec3& query, const Vec3& outs
     }
 }
 
+std::vector<ClosestPoint> AttributeSource::locate(const std::vector<Query>& queries) const {
+    std::vector<Vec3> positions(queries.size());
+    for (size_t i = 0; i < queries.size(); ++i) positions[i] = queries[i].position;
+    std::vector<ClosestPoint> found = tree_.find_all(positions, threads_);
+    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            keep_to_the_right_side(queries[i].position, queries[i].outside, queries[i].spacing, &found[i]);
+    });
+    return found;
+}
+
 Result<std::vector<ClosestPoint>> AttributeSource::locate(const GeometryImage& image, uint32_t side) const {
     GIM_TRY(gluing, glue_ring(image.sideband, image.side));
     const GridSurface surface(image, std::move(gluing));
     const double scale = double(image.side - 1) / (side - 1);
-    const auto texel = [&](size_t i) {
-        const size_t row = i / side, column = i % side;
-        return surface.at(double(row) * scale, double(column) * scale);
-    };
-    std::vector<Vec3> queries(size_t{side} * side);
-    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) queries[i] = texel(i).position;
-    });
-    std::vector<ClosestPoint> found = tree_.find_all(queries, threads_);
+    std::vector<Query> queries(size_t{side} * side);
     parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            const auto p = texel(i);
-            keep_to_the_right_side(p.position, p.outside, p.spacing, &found[i]);
+            const auto p = surface.at(double(i / side) * scale, double(i % side) * scale);
+            queries[i] = {p.position, p.outside, p.spacing};
         }
     });
-    return found;
+    return locate(queries);
+}
+
+Result<AttributeSource::Texels> AttributeSource::locate(const MultiChartImage& image, uint32_t exponent) const {
+    GIM_TRY(point, glue_samples(image.mask, image.seams));
+    const uint32_t width = image.width(), per_sample = 1u << exponent;
+    const auto columns = static_cast<uint32_t>(chart_plane_side(width, exponent)),
+               rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
+    const std::vector<CellKind> kinds = classify_cells(image.mask, point);
+    struct Face {
+        Triangle corners{};
+        uint32_t cell = 0;
+    };
+    std::vector<Face> faces;
+    std::vector<Vec3> outside(image.positions.size(), Vec3::Zero());
+    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
+        const uint32_t first = cell / (width - 1) * width + cell % (width - 1);
+        const auto squared = [&](uint32_t i, uint32_t j) {
+            return (image.positions[first + i] - image.positions[first + j]).squaredNorm();
+        };
+        const bool main = kinds[cell] == CellKind::kShorter && squared(0, width + 1) <= squared(1, width);
+        const CellTriangles triangles = triangles_of_cell(kinds[cell], first, width, main);
+        for (uint32_t k = 0; k < triangles.count; ++k) {
+            const Triangle& t = triangles.triangles[k];
+            const Vec3& a = image.positions[t[0]];
+            const Vec3 normal = (image.positions[t[1]] - a).cross(image.positions[t[2]] - a);
+            for (const uint32_t v : t) outside[point[v]] += normal;
+            faces.push_back({t, cell});
+        }
+    }
+    // Texels by the faces that they lie in; those on an edge belong to the first.
+    Texels result;
+    std::vector<Query> queries;
+    std::vector<bool> taken(size_t{columns} * rows, false);
+    for (const Face& face : faces) {
+        const uint32_t row = face.cell / (width - 1), column = face.cell % (width - 1);
+        std::array<Vec2, 3> corner;
+        for (size_t k = 0; k < 3; ++k)
+            corner[k] = Vec2(face.corners[k] % width - column, face.corners[k] / width - row);
+        const double area = twice_signed_area(corner[0], corner[1], corner[2]);
+        for (uint32_t i = 0; i <= per_sample; ++i) {
+            for (uint32_t j = 0; j <= per_sample; ++j) {
+                const Vec2 p = Vec2(j, i) / per_sample;
+                const std::array<double, 3> w{twice_signed_area(p, corner[1], corner[2]) / area,
+                                              twice_signed_area(corner[0], p, corner[2]) / area,
+                                              twice_signed_area(corner[0], corner[1], p) / area};
+                if (std::min({w[0], w[1], w[2]}) < 0) continue;  // exact: all are multiples of 2^-k
+                const uint32_t texel = (row * per_sample + i) * columns + column * per_sample + j;
+                if (taken[texel]) continue;
+                taken[texel] = true;
+                Query query;
+                for (size_t k = 0; k < 3; ++k) {
+                    query.position += w[k] * image.positions[face.corners[k]];
+                    query.outside += w[k] * unit_or_zero(outside[point[face.corners[k]]]);
+                    query.spacing = std::max(query.spacing, (image.positions[face.corners[k]] -
+                                                             image.positions[face.corners[(k + 1) % 3]])
+                                                                .norm());
+                }
+                query.outside = unit_or_zero(query.outside);
+                result.texels.push_back(texel);
+                queries.push_back(query);
+            }
+        }
+    }
+    result.points = locate(queries);
+    return result;
 }
 
 Vec3 AttributeSource::normal(const ClosestPoint& point) const {

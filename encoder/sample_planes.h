@@ -13,6 +13,7 @@
 
 #include "encoder/closest_point.h"
 #include "encoder/geometry_image.h"
+#include "encoder/multi_chart_image.h"
 #include "encoder/result.h"
 
 namespace gim {
@@ -27,6 +28,13 @@ class AttributeSource {
     // O(side^2 log F).
     Result<std::vector<ClosestPoint>> locate(const GeometryImage& image, uint32_t side) const;
 
+    // Of charts, 2^exponent texels a sample: only those that lie in a triangle, told by their numbers in the plane, row-major.
+    struct Texels {
+        std::vector<uint32_t> texels;
+        std::vector<ClosestPoint> points;
+    };
+    Result<Texels> locate(const MultiChartImage& image, uint32_t exponent) const;
+
     // Unit normals, one triple per point: interpolated within a face, with corners that are smooth over edges bent by less
     // than kCreaseAngle and sharp over others.
     std::vector<float> normals(std::span<const ClosestPoint> points) const;
@@ -37,6 +45,13 @@ class AttributeSource {
     static constexpr double kCreaseAngle = 60;  // degrees
 
   private:
+    // A point of the image's surface.
+    struct Query {
+        Vec3 position = Vec3::Zero(), outside = Vec3::Zero();
+        double spacing = 0;  // of samples around it
+    };
+    std::vector<ClosestPoint> locate(const std::vector<Query>& queries) const;
+
     Vec3 face_normal(uint32_t face) const;
     void keep_to_the_right_side(const Vec3& query, const Vec3& outside, double spacing, ClosestPoint* found) const;
 

@@ -22,7 +22,7 @@ std::string complaint(const ChartImages& images, const CodingParameters& p) {
     if (images.mates.size() > kMaxChartPaths)
         return std::to_string(images.mates.size()) + " cut-paths: the format takes " + std::to_string(kMaxChartPaths) +
                "; ask for fewer charts";
-    if (images.width > kMaxAtlasSide || images.height > kMaxAtlasSide) return "the image is too long for the format";
+    if (images.image.width() > kMaxAtlasSide || images.image.height() > kMaxAtlasSide) return "the image is too long for the format";
     for (size_t c = 0; c < images.charts.size(); ++c) {
         if (std::max(images.charts[c].columns, images.charts[c].rows) > kMaxChartSide)
             return "chart " + std::to_string(c) + " is too long for the format; ask for more charts";
@@ -103,8 +103,8 @@ Result<ChartFileWriter> ChartFileWriter::create(const ChartImages& images, const
     Header& header = writer.header_;
     header.layout = FileLayout::kCharts;
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
-    header.width = images.width;
-    header.height = images.height;
+    header.width = images.image.width();
+    header.height = images.image.height();
     header.level_count = static_cast<uint32_t>(images.levels.size());
     const std::vector<Vec3> defined = defined_positions(images);
     const std::span<const Vec3> all = defined;

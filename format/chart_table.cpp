@@ -30,7 +30,7 @@ bool read_gamma(BitReader* bits, uint32_t* n) {
 
 }  // namespace
 
-uint32_t ChartBox::steps() const {
+uint32_t halvings(uint32_t columns, uint32_t rows) {
     uint32_t steps = 0;
     for (uint32_t least = std::min(columns, rows); least >= 3; least -= least / 2) ++steps;
     return std::min(steps, kMaxLevels);

@@ -23,14 +23,18 @@ inline constexpr uint32_t kMaxChartPaths = 16384;  // of all charts; bounds the 
 inline constexpr uint32_t kMaxChartSide = 32768;
 inline constexpr uint32_t kUnmated = UINT32_MAX;  // a path along an input boundary
 
+// How often a box can be halved so that two samples are left each way; kMaxLevels at most.
+uint32_t halvings(uint32_t columns, uint32_t rows);
+
 struct ChartBox {
     uint32_t columns = 2, rows = 2;               // at full resolution
     int32_t atlas_column = 0, atlas_row = 0;      // of the box's first sample in the rectangle; may lie outside
     uint32_t path_count = 0;
 
-    // Halvings of the box by the wavelet: as many as leave two samples each way.
-    uint32_t steps() const;
+    // Halvings of the box by the wavelet.
+    uint32_t steps() const { return halvings(columns, rows); }
 };
+
 
 // Sizes that hold for a whole level.
 struct LevelSize {

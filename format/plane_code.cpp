@@ -12,8 +12,9 @@ constexpr uint8_t kLossyWavelet = 0;  // other codings are for later versions
 
 }  // namespace
 
-Status parse_plane(std::span<const uint8_t> payload, uint32_t image_count, uint32_t image,
+Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint32_t image,
                    const ContainerLimits& limits, PlaneChunk* plane) {
+    const uint32_t image_count = header.image_count();
     ByteReader reader(payload);
     uint8_t coding = 0;
     if (!reader.read_u8(&coding)) return Status::kMalformed;
@@ -25,13 +26,14 @@ Status parse_plane(std::span<const uint8_t> payload, uint32_t image_count, uint3
     const size_t sides_at = reader.position();
     if (!reader.skip(image_count)) return Status::kMalformed;
     plane->side_exponents = payload.subspan(sides_at, image_count);
-    uint64_t samples = 0;
-    uint32_t largest = 0;
+    const bool charts = header.layout == FileLayout::kCharts;
+    uint64_t samples = 0, largest = 0;
     for (const uint8_t j : plane->side_exponents) {
-        if (j < 1 || j > kMaxSideExponent) return Status::kMalformed;
-        const uint64_t side = (uint64_t{1} << j) + 1;
-        samples += side * side;  // at most 2^16 * 2^29
-        largest = std::max(largest, static_cast<uint32_t>(side));
+        if (charts ? j > kMaxTexelExponent : j < 1 || j > kMaxSideExponent) return Status::kMalformed;
+        const uint64_t width = charts ? chart_plane_side(header.width, j) : (uint64_t{1} << j) + 1,
+                       height = charts ? chart_plane_side(header.height, j) : width;
+        samples += width * height;  // at most 2^16 * 2^29
+        largest = std::max({largest, width, height});
     }
     if (largest > limits.max_side || samples > limits.max_samples) return Status::kLimitExceeded;
 

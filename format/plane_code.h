@@ -16,7 +16,7 @@ inline constexpr float kNormalUnit = 1024;  // a writer's length of a normal; re
 // A plane chunk as stored; the spans point into its payload.
 struct PlaneChunk {
     float quantizer = 0;
-    std::span<const uint8_t> side_exponents;  // one per image; side = 2^j + 1
+    std::span<const uint8_t> side_exponents;  // one per image; squares: side = 2^j + 1, charts: 2^j texels a sample
     std::span<const uint8_t> stream;          // of the image that was asked for
 
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
@@ -26,8 +26,15 @@ struct PlaneChunk {
 inline constexpr uint32_t kPlaneKinds = 2;
 inline ChunkType plane_type(uint32_t kind) { return kind == 0 ? ChunkType::kNormals : ChunkType::kColors; }
 
-// image < image_count.
-Status parse_plane(std::span<const uint8_t> payload, uint32_t image_count, uint32_t image,
+inline constexpr uint32_t kMaxTexelExponent = 6;  // of charts
+
+// Texels along a side of the rectangle of charts.
+constexpr uint64_t chart_plane_side(uint32_t rectangle_side, uint32_t exponent) {
+    return (uint64_t{rectangle_side - 1} << exponent) + 1;
+}
+
+// image < header.image_count().
+Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint32_t image,
                    const ContainerLimits& limits, PlaneChunk* plane);
 
 // One exponent and one stream per image.

@@ -128,14 +128,15 @@ GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size
                                    float* positions, float* normals, float* texcoords, uint32_t* triangles,
                                    void* scratch, size_t scratch_size);
 
-/* Attribute planes: what a surface has besides its shape, as images on the same square at a resolution of their own. Sample
- * (row, column) of a plane of side s belongs to the surface point at row/(s-1), column/(s-1) of the square. Samples of one
- * surface point on the cut are bit-equal. A file may have one plane of each kind, of all its images.
+/* Attribute planes: what a surface has besides its shape, as images on the same square or rectangle at a resolution of their
+ * own. Sample (row, column) of a plane belongs to the surface point at row/(height-1), column/(width-1) of the image.
+ * GIM_LAYOUT_GIM: samples of one surface point on the cut are bit-equal. GIM_LAYOUT_MCGIM: samples between the charts have
+ * values that go on smoothly, for filtering. A file may have one plane of each kind, of all its images.
  *   GIM_PLANE_NORMALS  the input's unit normals in object space, pointing out of the surface; 0 0 0 where undefined
  *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB */
 enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
 typedef struct gim_plane_info {
-    uint32_t width, height;  /* samples at this level; squares: 2^j + 1 each, independent of the image's side */
+    uint32_t width, height;  /* samples at this level; independent of the image's at level 0 */
     uint32_t coarsest_level; /* of the plane: level L has every 2^L-th sample's place */
     float quantizer;       /* quantizer step: colours in 1/255, normals in 1/1024 of a unit vector as gim writes them */
     uint64_t stream_size;  /* bytes of this image's plane in the file */
@@ -148,7 +149,7 @@ typedef struct gim_plane_info {
 GIM_API gim_status gim_read_plane_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                        uint32_t kind, uint32_t level, gim_plane_info* plane_info);
 
-/* values: side*side*3 floats, row-major. scratch: as for positions. On failure values are unspecified. Cost O(side^2). The
+/* values: width*height*3 floats, row-major. scratch: as for positions. On failure values are unspecified. Cost O(side^2). The
  * floats are the same bits on every platform. */
 GIM_API gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
                                     uint32_t level, float* values, void* scratch, size_t scratch_size);
