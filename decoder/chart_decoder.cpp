@@ -226,10 +226,10 @@ void diffuse(const DecodedChart& chart, const ChartWorkspace& ws, float* samples
         for (; begin < last; ++begin) {
             const uint32_t row = queue[begin] / chart.columns, column = queue[begin] % chart.columns;
             for (const int32_t offset : around) {
-                const bool outside = (column == 0 && (offset == -1 || offset == stride - 1 || offset == -stride - 1)) ||
-                                     (column + 1 == chart.columns &&
-                                      (offset == 1 || offset == stride + 1 || offset == -stride + 1)) ||
-                                     (row == 0 && offset < -1) || (row + 1 == chart.rows && offset > 1);
+                const bool outside =
+                    (column == 0 && (offset == -1 || offset == stride - 1 || offset == -stride - 1)) ||
+                    (column + 1 == chart.columns && (offset == 1 || offset == stride + 1 || offset == -stride + 1)) ||
+                    (row == 0 && offset < -1) || (row + 1 == chart.rows && offset > 1);
                 if (outside) continue;
                 const uint32_t i = neighbour(queue[begin], offset);
                 if (depth[i] != kInside) continue;
@@ -273,8 +273,13 @@ PyramidWorkspace planes_of(const ChartWorkspace& ws, size_t first, size_t low_fi
 template <class Wavelet>
 bool decode_chart(const Header& header, const ChartLevelShape& shape, const DecodedChart& chart,
                   const PyramidWorkspace& planes, RangeDecoder& decoder, uint32_t stream_level) {
-    const PyramidShape pyramid = {chart.box.columns, chart.box.rows, chart.box.steps(), shape.level,
-                                  header.quantizer, 1 << (header.bits - 1), true};
+    const PyramidShape pyramid = {chart.box.columns,
+                                  chart.box.rows,
+                                  chart.box.steps(),
+                                  shape.level,
+                                  header.quantizer,
+                                  1 << (header.bits - 1),
+                                  true};
     const uint32_t done = stream_level + 1 == header.level_count ? 0 : chart.box.steps() - stream_level - 1;
     PyramidDecoder<Wavelet> image(pyramid, planes, done);
     BandCoder<RangeDecoder> coder(&decoder, planes.models, planes.band_work);
@@ -325,8 +330,7 @@ Status open_charts(const Header& header, std::span<const uint8_t> file, const Co
     if (Status s = for_each_chart(payload, header, limits, level, nullptr, &reader,
                                   [&](const DecodedChart& chart, uint32_t) {
                                       shape->samples += uint64_t{chart.columns} * chart.rows;
-                                      shape->low_samples +=
-                                          uint64_t{low_count(chart.columns)} * low_count(chart.rows);
+                                      shape->low_samples += uint64_t{low_count(chart.columns)} * low_count(chart.rows);
                                       shape->widest = std::max(shape->widest, chart.columns);
                                       padded += uint64_t{chart.columns + 1} * (chart.rows + 1);
                                   });
@@ -399,7 +403,8 @@ Status decode_charts(const Header& header, std::span<const uint8_t> file, const 
         return s;
     if (number_points(shape, ws) != shape.size.vertices) return Status::kMalformed;
     const size_t count = static_cast<size_t>(shape.samples) * 3;
-    float* units = lossless ? to_units<int32_t>(ws.pyramid.images[0], count) : to_units<float>(ws.pyramid.images[0], count);
+    float* units =
+        lossless ? to_units<int32_t>(ws.pyramid.images[0], count) : to_units<float>(ws.pyramid.images[0], count);
     if (average_points(shape, ws, units)) {
         for (uint32_t c = 0; c < shape.chart_count; ++c) diffuse(ws.charts[c], ws, units);
     }

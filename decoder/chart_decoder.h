@@ -44,9 +44,9 @@ struct ChartWorkspace {
     uint32_t* mates = nullptr;
     BorderModels* border_models = nullptr;
     // Per sample of all boxes:
-    uint32_t* border = nullptr;   // border samples, chart after chart
-    uint32_t* point = nullptr;    // vertex of the glued surface; unspecified where undefined
-    uint8_t* depth = nullptr;     // kOnBorder, steps to the border as far as they are known, kInside, kUndefined
+    uint32_t* border = nullptr;  // border samples, chart after chart
+    uint32_t* point = nullptr;   // vertex of the glued surface; unspecified where undefined
+    uint8_t* depth = nullptr;    // kOnBorder, steps to the border as far as they are known, kInside, kUndefined
     uint32_t* queue = nullptr;
     float* corrections = nullptr;  // triples
     // Per vertex:

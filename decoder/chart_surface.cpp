@@ -50,9 +50,9 @@ void add_cell(const ChartGrid& grid, uint32_t row, uint32_t column, uint32_t fir
     if (count < 4) return;
     const Split split = chart_split(grid, row, column);
     const auto [a, b, c, d] = defined;
-    const bool main = split == Split::kMain ||
-                      (split == Split::kShorter && squared_distance(samples + size_t{a} * 3, samples + size_t{c} * 3) <=
-                                                       squared_distance(samples + size_t{b} * 3, samples + size_t{d} * 3));
+    const bool main = split == Split::kMain || (split == Split::kShorter &&
+                                                squared_distance(samples + size_t{a} * 3, samples + size_t{c} * 3) <=
+                                                    squared_distance(samples + size_t{b} * 3, samples + size_t{d} * 3));
     sink->add(a, b, main ? c : d);
     main ? sink->add(a, c, d) : sink->add(b, c, d);
 }

@@ -171,7 +171,8 @@ gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t s
 
 gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                 float* positions, void* scratch, size_t scratch_bytes) {
-    return gim_decode_grid(info, bytes, size, image, level, positions, nullptr, nullptr, nullptr, scratch, scratch_bytes);
+    return gim_decode_grid(info, bytes, size, image, level, positions, nullptr, nullptr, nullptr, scratch,
+                           scratch_bytes);
 }
 
 gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,

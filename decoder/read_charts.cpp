@@ -13,9 +13,9 @@ namespace {
 struct Surface {
     ChartLevelShape shape;
     ChartWorkspace ws;
-    uint32_t* triangles = nullptr;     // flat samples
-    float* vertex_normals = nullptr;   // room for them
-    const float* samples = nullptr;    // units
+    uint32_t* triangles = nullptr;    // flat samples
+    float* vertex_normals = nullptr;  // room for them
+    const float* samples = nullptr;   // units
 
     void lay_out(Arena* arena) {
         ws = lay_out_charts(shape, arena);
@@ -45,7 +45,8 @@ Status decode(const Header& header, std::span<const uint8_t> file, const Contain
     if (scratch.size < scratch_size(surface->shape)) return Status::kScratchTooSmall;
     Arena arena(scratch.bytes);
     surface->lay_out(&arena);
-    if (Status s = decode_charts(header, file, limits, surface->shape, surface->ws, &surface->samples); s != Status::kOk)
+    if (Status s = decode_charts(header, file, limits, surface->shape, surface->ws, &surface->samples);
+        s != Status::kOk)
         return s;
     const bool as_told = triangulate_charts(surface->shape, surface->ws, surface->samples, surface->triangles,
                                             surface->shape.size.triangles);
@@ -85,11 +86,12 @@ Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, co
     Surface surface;
     if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
     const ChartLevelShape& shape = surface.shape;
-    for_each_chart_vertex(shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row,
-                                                 uint32_t sample) {
-        to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
-        if (out.texcoords) set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
-    });
+    for_each_chart_vertex(
+        shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row, uint32_t sample) {
+            to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
+            if (out.texcoords)
+                set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
+        });
     if (out.normals) chart_normals(shape, surface.ws, surface.samples, surface.triangles, out.normals);
     if (out.triangles) {
         for (size_t k = 0; k < size_t{shape.size.triangles} * 3; ++k)

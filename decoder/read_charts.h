@@ -23,7 +23,7 @@ Status count_chart_paths(const Header& header, std::span<const uint8_t> file, co
 // What gim_decode_mesh and gim_decode_grid give.
 struct SurfaceArrays {
     float* positions = nullptr;
-    float* normals = nullptr;    // may be nullptr, as all below
+    float* normals = nullptr;  // may be nullptr, as all below
     float* texcoords = nullptr;
     uint32_t* triangles = nullptr;
 };

@@ -103,8 +103,7 @@ Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace
         ring_classes(plane.seams, plane.width, {ws.class_of, ring_length(plane.width)});
         average_classes(plane.width, ws.class_of, ring_class_count(plane.seams, plane.width), values, ws.fuse);
     }
-    for (size_t i = 0; i < count; i += 3)
-        kind == GIM_PLANE_NORMALS ? normalize(values + i) : finish_color(values + i);
+    for (size_t i = 0; i < count; i += 3) kind == GIM_PLANE_NORMALS ? normalize(values + i) : finish_color(values + i);
     return Status::kOk;
 }
 

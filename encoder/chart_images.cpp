@@ -21,10 +21,10 @@ struct Lattice {
 
 // One chart at all levels, its masks on lattices that begin at their own corners.
 struct ChartPyramid {
-    Lattice origin;                       // of level 0
-    uint32_t columns = 0, rows = 0;       // of level 0
-    std::vector<ChartMask> masks;         // of levels 1, 2, ...; mask.pose into the mask
-    std::vector<Lattice> corners;         // of masks in their level's lattice, before the origin is moved
+    Lattice origin;                  // of level 0
+    uint32_t columns = 0, rows = 0;  // of level 0
+    std::vector<ChartMask> masks;    // of levels 1, 2, ...; mask.pose into the mask
+    std::vector<Lattice> corners;    // of masks in their level's lattice, before the origin is moved
 };
 
 std::vector<Vec2> border_of(const Chart& chart, const ChartMap& map) {
@@ -150,7 +150,8 @@ std::optional<LevelBorders> zip_level(const Atlas& atlas, const std::vector<Char
 
 uint64_t ChartImages::defined_count() const {
     uint64_t count = 0;
-    for (const auto& chart : defined) count += static_cast<uint64_t>(std::count(chart.begin(), chart.end(), uint8_t{1}));
+    for (const auto& chart : defined)
+        count += static_cast<uint64_t>(std::count(chart.begin(), chart.end(), uint8_t{1}));
     return count;
 }
 
@@ -173,8 +174,8 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
     std::vector<ChartPyramid> pyramids(count);
     parallel_blocks(count, 1, threads, [&](size_t, size_t begin, size_t end) {
         for (size_t c = begin; c < end; ++c)
-            pyramids[c] = make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c],
-                                       most_levels);
+            pyramids[c] =
+                make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c], most_levels);
     });
 
     ChartImages result;
@@ -212,8 +213,8 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
             const uint32_t column = placed.column + i % mask.width, row = placed.row + i / mask.width;
             const size_t sample = size_t{row} * image.width() + column;
             if (!mask.defined[i] || !image.mask.defined[sample]) continue;
-            const size_t at = static_cast<size_t>(row - places[c].row) * box.columns +
-                              static_cast<size_t>(column - places[c].column);
+            const size_t at =
+                static_cast<size_t>(row - places[c].row) * box.columns + static_cast<size_t>(column - places[c].column);
             result.positions.back()[at] = image.positions[sample];
             result.defined.back()[at] = 1;
         }

@@ -19,20 +19,20 @@ namespace gim {
 
 // The borders of one level.
 struct LevelBorders {
-    std::vector<std::vector<uint32_t>> loops;    // per chart: border samples as row * columns + column of its box at this
-                                                 // level, from the first path's begin node on
-    std::vector<uint32_t> lengths;               // per path
-    std::vector<std::vector<ZipStep>> zippers;   // as in SeamRecord
+    std::vector<std::vector<uint32_t>> loops;  // per chart: border samples as row * columns + column of its box at this
+                                               // level, from the first path's begin node on
+    std::vector<uint32_t> lengths;             // per path
+    std::vector<std::vector<ZipStep>> zippers;  // as in SeamRecord
     LevelSize size;
 };
 
 struct ChartImages {
-    MultiChartImage image;                       // the charts in their rectangle
+    MultiChartImage image;  // the charts in their rectangle
     std::vector<ChartBox> charts;
-    std::vector<uint32_t> mates;                 // per path, chart after chart
-    std::vector<std::vector<Vec3>> positions;    // per chart, its box row by row; zero where undefined
-    std::vector<std::vector<uint8_t>> defined;   // per chart, likewise
-    std::vector<LevelBorders> levels;            // finest first; at least one
+    std::vector<uint32_t> mates;                // per path, chart after chart
+    std::vector<std::vector<Vec3>> positions;   // per chart, its box row by row; zero where undefined
+    std::vector<std::vector<uint8_t>> defined;  // per chart, likewise
+    std::vector<LevelBorders> levels;           // finest first; at least one
 
     uint64_t defined_count() const;
     uint64_t sample_count() const { return uint64_t{image.width()} * image.height(); }

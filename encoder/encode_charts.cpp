@@ -1,9 +1,12 @@
 #include "encoder/encode_charts.h"
 
+#include <cstdio>
 #include <utility>
 
+#include "encoder/fit_strength.h"
 #include "encoder/multi_chart.h"
 #include "encoder/result.h"
+#include "encoder/snapshot.h"
 #include "encoder/write_charts.h"
 
 namespace gim {
@@ -15,14 +18,25 @@ constexpr uint32_t kMostLevels = 8;
 
 }  // namespace
 
-Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock, EncodeReport& report) {
+Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                const Observer& observer, EncodeReport& report) {
     MultiChartOptions chart_options;
     if (options.charts > 0) chart_options.charts = options.charts;
     chart_options.samples = options.samples;
+    chart_options.fit = fit_strength(options);
     chart_options.seed = options.seed;
     chart_options.threads = options.threads;
     GIM_TRY(multi_chart, make_multi_chart_image(mesh, chart_options, clock));
     report.stretch_efficiency = multi_chart.stretch_efficiency;
+    report.folds = multi_chart.after_fit.folds;
+    report.folds_before_fit = multi_chart.before_fit.folds;
+    if (observer) {
+        char caption[64];
+        std::snprintf(caption, sizeof caption, "%zu charts, %.0f%% packed", multi_chart.atlas.charts.size(),
+                      100 * multi_chart.packing_efficiency);
+        observer(make_snapshot("charts", caption, multi_chart.atlas, multi_chart.packing));
+        observer(make_snapshot("image-fitted", "fitted and zipped", multi_chart.image));
+    }
     clock.begin(Stage::kSample);
     return make_chart_images(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
                              kMostLevels, options.threads);

@@ -10,7 +10,8 @@
 namespace gim {
 
 // All stages before coding (multi_chart.h), and the figures that they give.
-Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock, EncodeReport& report);
+Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                const Observer& observer, EncodeReport& report);
 
 // The charts must outlive the job.
 CodingJob code_charts(const ChartImages& charts, EncodeReport& report);

@@ -9,7 +9,8 @@ namespace {
 
 // Half the samples each way, undefined ones filled with the mean of those below, until nothing is undefined; and back.
 void pull_push(std::vector<float>& values, std::vector<float> weights, uint32_t columns, uint32_t rows) {
-    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w > 0; }) || (columns == 1 && rows == 1)) return;
+    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w > 0; }) || (columns == 1 && rows == 1))
+        return;
     const uint32_t half_columns = low_count(columns), half_rows = low_count(rows);
     std::vector<float> half(size_t{half_columns} * half_rows * 3, 0.0f), half_weights(half.size() / 3, 0.0f);
     for (uint32_t row = 0; row < rows; ++row) {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "encoder/code_bands.h"
+#include "encoder/extend_chart.h"
 #include "encoder/input_colors.h"
 #include "encoder/parallel.h"
-#include "encoder/extend_chart.h"
 #include "encoder/sample_planes.h"
 #include "encoder/surface_samples.h"
 #include "format/chart_table.h"
@@ -100,8 +100,8 @@ gim_status append_grid(const gim_info& info, std::span<const uint8_t> file, uint
     std::vector<float> positions(size_t{level.width} * level.height * 3), texcoords(positions.size() / 3 * 2);
     std::vector<uint32_t> triangles(size_t{level.triangle_count} * 3);
     std::vector<std::max_align_t> scratch(level.scratch_size / sizeof(std::max_align_t) + 1);
-    status = gim_decode_grid(&info, file.data(), file.size(), image, 0, positions.data(), nullptr,
-                             texcoords.data(), triangles.data(), scratch.data(), level.scratch_size);
+    status = gim_decode_grid(&info, file.data(), file.size(), image, 0, positions.data(), nullptr, texcoords.data(),
+                             triangles.data(), scratch.data(), level.scratch_size);
     if (status != GIM_OK) return status;
     const auto first = static_cast<uint32_t>(grids->mesh.positions.size());
     for (size_t i = 0; i < positions.size(); i += 3) {

@@ -25,9 +25,9 @@ struct MultiChartOptions {
 
 struct MultiChart {
     MultiChartImage image;
-    Atlas atlas;              // what the image was made from
+    Atlas atlas;  // what the image was made from
     Packing packing;
-    TopologySummary topology;  // of the mesh
+    TopologySummary topology;                               // of the mesh
     double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1
     uint32_t packings = 1;                                  // how many it took to get one whose seams close
     FitQuality before_fit, after_fit;                       // the same, and not measured, without a fit

@@ -137,6 +137,23 @@ CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, b
     return {{{{a, b, d}, {b, c, d}}}, 2};
 }
 
+std::vector<CellTriangle> triangles_of(const MultiChartImage& image, const std::vector<uint32_t>& point) {
+    const auto squared_distance = [&](uint32_t a, uint32_t b) {
+        return (image.positions[point[a]] - image.positions[point[b]]).squaredNorm();
+    };
+    const uint32_t width = image.width();
+    const std::vector<CellKind> kinds = classify_cells(image.mask, point);
+    std::vector<CellTriangle> triangles;
+    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
+        const uint32_t first = cell / (width - 1) * width + cell % (width - 1);
+        const bool main = kinds[cell] == CellKind::kShorter &&
+                          squared_distance(first, first + width + 1) <= squared_distance(first + 1, first + width);
+        const CellTriangles halves = triangles_of_cell(kinds[cell], first, width, main);
+        for (uint32_t k = 0; k < halves.count; ++k) triangles.push_back({halves.triangles[k], cell});
+    }
+    return triangles;
+}
+
 Result<Reconstruction> reconstruct(const MultiChartImage& image) {
     const SampleMask& mask = image.mask;
     GIM_TRY(point, glue_samples(mask, image.seams));
@@ -151,20 +168,10 @@ Result<Reconstruction> reconstruct(const MultiChartImage& image) {
         }
         return v;
     };
-    const auto squared_distance = [&](uint32_t a, uint32_t b) {
-        return (image.positions[point[a]] - image.positions[point[b]]).squaredNorm();
-    };
-    const std::vector<CellKind> kinds = classify_cells(mask, point);
-    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
-        const uint32_t first = cell / (mask.width - 1) * mask.width + cell % (mask.width - 1);
-        const bool main = kinds[cell] == CellKind::kShorter && squared_distance(first, first + mask.width + 1) <=
-                                                                   squared_distance(first + 1, first + mask.width);
-        const CellTriangles cell_triangles = triangles_of_cell(kinds[cell], first, mask.width, main);
-        for (uint32_t k = 0; k < cell_triangles.count; ++k) {
-            const auto [a, b, c] = cell_triangles.triangles[k];
-            if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) continue;
-            result.mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
-        }
+    for (const CellTriangle& triangle : triangles_of(image, point)) {
+        const auto [a, b, c] = triangle.corners;
+        if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) continue;
+        result.mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
     }
     return result;
 }

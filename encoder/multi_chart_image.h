@@ -71,6 +71,15 @@ struct CellTriangles {
 };
 CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main);
 
+// A triangle over samples, and its cell.
+struct CellTriangle {
+    Triangle corners{};
+    uint32_t cell = 0;
+};
+// All triangles of all cells, split as the decoder splits them, also those with two corners in one point. point: of
+// glue_samples.
+std::vector<CellTriangle> triangles_of(const MultiChartImage& image, const std::vector<uint32_t>& point);
+
 // How the surface is put together: vertices are classes of samples, triangles those of the cells that have three
 // different vertices, split as the decoder splits them (format/chart_split.h).
 struct Reconstruction {

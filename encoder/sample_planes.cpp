@@ -187,33 +187,18 @@ Result<AttributeSource::Texels> AttributeSource::locate(const MultiChartImage& i
     const uint32_t width = image.width(), per_sample = 1u << exponent;
     const auto columns = static_cast<uint32_t>(chart_plane_side(width, exponent)),
                rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
-    const std::vector<CellKind> kinds = classify_cells(image.mask, point);
-    struct Face {
-        Triangle corners{};
-        uint32_t cell = 0;
-    };
-    std::vector<Face> faces;
+    const std::vector<CellTriangle> faces = triangles_of(image, point);
     std::vector<Vec3> outside(image.positions.size(), Vec3::Zero());
-    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
-        const uint32_t first = cell / (width - 1) * width + cell % (width - 1);
-        const auto squared = [&](uint32_t i, uint32_t j) {
-            return (image.positions[first + i] - image.positions[first + j]).squaredNorm();
-        };
-        const bool main = kinds[cell] == CellKind::kShorter && squared(0, width + 1) <= squared(1, width);
-        const CellTriangles triangles = triangles_of_cell(kinds[cell], first, width, main);
-        for (uint32_t k = 0; k < triangles.count; ++k) {
-            const Triangle& t = triangles.triangles[k];
-            const Vec3& a = image.positions[t[0]];
-            const Vec3 normal = (image.positions[t[1]] - a).cross(image.positions[t[2]] - a);
-            for (const uint32_t v : t) outside[point[v]] += normal;
-            faces.push_back({t, cell});
-        }
+    for (const CellTriangle& face : faces) {
+        const auto& [a, b, c] = face.corners;
+        const Vec3 normal = (image.positions[b] - image.positions[a]).cross(image.positions[c] - image.positions[a]);
+        for (const uint32_t v : face.corners) outside[point[v]] += normal;
     }
     // Texels by the faces that they lie in; those on an edge belong to the first.
     Texels result;
     std::vector<Query> queries;
     std::vector<bool> taken(size_t{columns} * rows, false);
-    for (const Face& face : faces) {
+    for (const CellTriangle& face : faces) {
         const uint32_t row = face.cell / (width - 1), column = face.cell % (width - 1);
         std::array<Vec2, 3> corner;
         for (size_t k = 0; k < 3; ++k)
@@ -233,9 +218,9 @@ Result<AttributeSource::Texels> AttributeSource::locate(const MultiChartImage& i
                 for (size_t k = 0; k < 3; ++k) {
                     query.position += w[k] * image.positions[face.corners[k]];
                     query.outside += w[k] * unit_or_zero(outside[point[face.corners[k]]]);
-                    query.spacing = std::max(query.spacing, (image.positions[face.corners[k]] -
-                                                             image.positions[face.corners[(k + 1) % 3]])
-                                                                .norm());
+                    query.spacing = std::max(
+                        query.spacing,
+                        (image.positions[face.corners[k]] - image.positions[face.corners[(k + 1) % 3]]).norm());
                 }
                 query.outside = unit_or_zero(query.outside);
                 result.texels.push_back(texel);

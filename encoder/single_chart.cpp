@@ -8,7 +8,7 @@
 #include "encoder/boundary_map.h"
 #include "encoder/circle_map.h"
 #include "encoder/density.h"
-#include "encoder/fit.h"
+#include "encoder/fit_strength.h"
 #include "encoder/parametrize.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
@@ -23,12 +23,6 @@ namespace {
 // Faces larger than this part of the surface are split before cutting: about 8 samples of the image, but neither so few faces
 // that the cut has no choice, nor so many that they cost more time than they are worth.
 double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
-
-// A loose fit multiplies the tangential detail: only what is coded without loss can afford it.
-bool is_loose(const EncodeOptions& options) {
-    if (options.fit != FitStrength::kAuto) return options.fit == FitStrength::kLoose;
-    return options.rate.kind == RateTarget::Kind::kLossless;
-}
 
 std::string percent(double part) {
     char text[32];
@@ -93,11 +87,12 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     clock.begin(Stage::kSample);
     chart.image = sample_surface(boundary, uv, options.side);
     if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
-    if (options.fit == FitStrength::kOff) return chart;
+    const auto strength = fit_strength(options);
+    if (!strength) return chart;
 
     clock.begin(Stage::kFit);
     FitOptions fit_options;
-    fit_options.strength = is_loose(options) ? FitOptions::Strength::kLoose : FitOptions::Strength::kStiff;
+    fit_options.strength = *strength;
     fit_options.seed = options.seed;
     fit_options.threads = options.threads;
     GIM_TRY(fitted, fit(chart.image, mesh, fit_options, clock.progress()));

@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "encoder/atlas.h"
 #include "encoder/geometry_image.h"
+#include "encoder/multi_chart_image.h"
 #include "encoder/open_mesh.h"
+#include "encoder/pack.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -15,5 +18,11 @@ Snapshot make_snapshot(std::string name, std::string caption, const OpenedMesh& 
 
 // A geometry image as a surface; the rim of the square is the cut.
 Snapshot make_snapshot(std::string name, std::string caption, const GeometryImage& image);
+
+// Packed charts, and the surface cut open between them.
+Snapshot make_snapshot(std::string name, std::string caption, const Atlas& atlas, const Packing& packing);
+
+// A multi-chart image as a surface; the borders of the charts are the cut.
+Snapshot make_snapshot(std::string name, std::string caption, const MultiChartImage& image);
 
 }  // namespace gim

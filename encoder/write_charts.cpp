@@ -22,7 +22,8 @@ std::string complaint(const ChartImages& images, const CodingParameters& p) {
     if (images.mates.size() > kMaxChartPaths)
         return std::to_string(images.mates.size()) + " cut-paths: the format takes " + std::to_string(kMaxChartPaths) +
                "; ask for fewer charts";
-    if (images.image.width() > kMaxAtlasSide || images.image.height() > kMaxAtlasSide) return "the image is too long for the format";
+    if (images.image.width() > kMaxAtlasSide || images.image.height() > kMaxAtlasSide)
+        return "the image is too long for the format";
     for (size_t c = 0; c < images.charts.size(); ++c) {
         if (std::max(images.charts[c].columns, images.charts[c].rows) > kMaxChartSide)
             return "chart " + std::to_string(c) + " is too long for the format; ask for more charts";
@@ -55,7 +56,8 @@ void chain_base(Pyramid<int32_t>* pyramid) {
 }
 
 template <class Wavelet>
-Pyramid<typename Wavelet::Sample> analyse_chart(const ChartImages& images, size_t c, const Header& header, float finest) {
+Pyramid<typename Wavelet::Sample> analyse_chart(const ChartImages& images, size_t c, const Header& header,
+                                                float finest) {
     using Sample = typename Wavelet::Sample;
     const ChartBox& box = images.charts[c];
     std::vector<Sample> units = to_units<Sample>(images.positions[c], header);
@@ -89,7 +91,8 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
         for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
             if (mates[p] >= p) continue;
             auto step = borders.zippers[zipper_of[mates[p]]].begin();
-            (void)coder.code_zipper(paths[mates[p]], paths[p], [&] { return *step++; }, [](uint32_t, uint32_t) {});
+            (void)coder.code_zipper(
+                paths[mates[p]], paths[p], [&] { return *step++; }, [](uint32_t, uint32_t) {});
         }
         first_path += chart.path_count;
     }
@@ -145,7 +148,8 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
     uint32_t widest = 0;
     std::vector<Pyramid<int32_t>> bands;
     for (size_t c = 0; c < charts_.size(); ++c) {
-        bands.push_back(header.coding == Coding::kLossless ? lossless_[c] : quantize_bands(lossy_[c], header.quantizer));
+        bands.push_back(header.coding == Coding::kLossless ? lossless_[c]
+                                                           : quantize_bands(lossy_[c], header.quantizer));
         chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }

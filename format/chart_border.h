@@ -95,7 +95,8 @@ bool BorderCoder<Coder>::code_length(BorderPath& path, const BorderPath* paths, 
         // The difference to the mate's, signs alternating.
         const auto expected = static_cast<int32_t>(paths[path.mate].length);
         const int32_t difference = static_cast<int32_t>(path.length) - expected;
-        uint32_t coded = difference > 0 ? 2 * static_cast<uint32_t>(difference) - 1 : 2 * static_cast<uint32_t>(-difference);
+        uint32_t coded =
+            difference > 0 ? 2 * static_cast<uint32_t>(difference) - 1 : 2 * static_cast<uint32_t>(-difference);
         if (!code_number(models_.length[1], &coded)) return false;
         const auto half = static_cast<int32_t>((coded + 1) / 2);
         const int32_t length = expected + (coded & 1 ? half : -half);

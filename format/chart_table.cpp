@@ -105,8 +105,7 @@ Status ChartTableReader::finish() {
 std::vector<uint8_t> serialize_chart_table(const ChartTable& table, const Header& header) {
     uint32_t margin = 0, largest = 0;
     for (const ChartBox& chart : table.charts) {
-        margin = static_cast<uint32_t>(
-            std::max({static_cast<int32_t>(margin), -chart.atlas_column, -chart.atlas_row}));
+        margin = static_cast<uint32_t>(std::max({static_cast<int32_t>(margin), -chart.atlas_column, -chart.atlas_row}));
         largest = std::max({largest, chart.columns - 1, chart.rows - 1});
     }
     std::vector<uint8_t> payload;

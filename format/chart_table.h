@@ -27,14 +27,13 @@ inline constexpr uint32_t kUnmated = UINT32_MAX;  // a path along an input bound
 uint32_t halvings(uint32_t columns, uint32_t rows);
 
 struct ChartBox {
-    uint32_t columns = 2, rows = 2;               // at full resolution
-    int32_t atlas_column = 0, atlas_row = 0;      // of the box's first sample in the rectangle; may lie outside
+    uint32_t columns = 2, rows = 2;           // at full resolution
+    int32_t atlas_column = 0, atlas_row = 0;  // of the box's first sample in the rectangle; may lie outside
     uint32_t path_count = 0;
 
     // Halvings of the box by the wavelet.
     uint32_t steps() const { return halvings(columns, rows); }
 };
-
 
 // Sizes that hold for a whole level.
 struct LevelSize {
@@ -43,8 +42,8 @@ struct LevelSize {
 
 struct ChartTable {
     std::vector<ChartBox> charts;
-    std::vector<uint32_t> mates;     // per path, chart after chart: the path on the other side, or kUnmated
-    std::vector<LevelSize> levels;   // finest first
+    std::vector<uint32_t> mates;    // per path, chart after chart: the path on the other side, or kUnmated
+    std::vector<LevelSize> levels;  // finest first
 };
 
 // Chart by chart from the bytes of the table, trusting none; allocates nothing.

@@ -135,8 +135,8 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
     header->bits = bits;
     header->level_count = levels;
-    const Status shape =
-        header->layout == FileLayout::kCharts ? parse_rectangle(&reader, limits, header) : parse_sides(&reader, limits, file, header);
+    const Status shape = header->layout == FileLayout::kCharts ? parse_rectangle(&reader, limits, header)
+                                                               : parse_sides(&reader, limits, file, header);
     if (shape != Status::kOk) return shape;
 
     for (float& o : header->origin) {
@@ -171,7 +171,8 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(static_cast<uint8_t>(static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+    rest.push_back(static_cast<uint8_t>(static_cast<uint32_t>(header.layout) |
+                                        (header.coding == Coding::kLossy ? kLossyFlag : 0) |
                                         (header.level_psnr.empty() ? 0 : kPsnrFlag)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));

@@ -79,8 +79,9 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     sub->add_option("--samples", a.command.options.samples, "mcgim: bound on width * height of the image")
         ->check(CLI::Range(1000, 1 << 26))
         ->capture_default_str();
-    sub->add_option("--charts", a.command.options.charts,
-                    "mcgim: how many charts; a few more come out where the surface asks for them; 0: chosen by the shape")
+    sub->add_option(
+           "--charts", a.command.options.charts,
+           "mcgim: how many charts; a few more come out where the surface asks for them; 0: chosen by the shape")
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")

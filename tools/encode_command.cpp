@@ -48,8 +48,9 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("file", command.output));
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
-    print_line(format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
-                                        (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
+    print_line(
+        format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
+                                 (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
     if (report.charts > 0) {
         print_line(format_line("charts", std::to_string(report.charts) + ", " +
                                              fixed(100 * report.packing_efficiency, 1) + " % of the samples defined"));

@@ -35,7 +35,10 @@ ordered_json to_json(const EncodeReport& report) {
     ordered_json planes = ordered_json::array();
     for (const PlaneReport& plane : report.planes) {
         const bool is_color = plane.kind == PlaneReport::Kind::kColors;
-        ordered_json entry = {{"kind", is_color ? "colors" : "normals"}, {"width", plane.width}, {"height", plane.height}, {"bytes", plane.bytes}};
+        ordered_json entry = {{"kind", is_color ? "colors" : "normals"},
+                              {"width", plane.width},
+                              {"height", plane.height},
+                              {"bytes", plane.bytes}};
         entry[is_color ? "psnr" : "mean_angle"] = is_color ? plane.psnr : plane.mean_angle;
         planes.push_back(entry);
     }

@@ -77,7 +77,8 @@ std::vector<float> grid_tangents(const DecodedImage& image) {
             const bool right = column + 1 < image.columns && image.is_defined(i + 1),
                        left = column > 0 && image.is_defined(i - 1);
             Vec3 along = Vec3::Zero();
-            if (image.is_defined(i)) along = triple(image.grid, right ? i + 1 : i) - triple(image.grid, left ? i - 1 : i);
+            if (image.is_defined(i))
+                along = triple(image.grid, right ? i + 1 : i) - triple(image.grid, left ? i - 1 : i);
             Vec3 t = along - n * n.dot(along);
             t = t.norm() > 1e-6 * along.norm() ? t.normalized() : any_perpendicular(n);
             for (const double x : {t.x(), t.y(), t.z(), -1.0}) tangents.push_back(static_cast<float>(x));

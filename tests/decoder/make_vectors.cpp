@@ -276,7 +276,8 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     out.invalid("not-gim.raw-floats", to_bytes(std::vector<float>(75, 1.0f)));
     out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
     out.invalid("unsupported-version.layout-2", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{2}; }));
-    out.invalid("unsupported-version.reserved-flag", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x10}; }));
+    out.invalid("unsupported-version.reserved-flag",
+                with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x10}; }));
     out.invalid("unsupported-version.critical-chunk",
                 with_parts(plain, [](Parts& p) { insert_chunk(&p, 0, 77, false, {1}); }));
     out.invalid("checksum.index", changed(plain, 12, static_cast<uint8_t>(plain[12] ^ 1)));

@@ -91,8 +91,8 @@ typedef struct gim_level_info {
     uint32_t coarsest_level; /* the coarsest level of this image that its seams can close */
     uint32_t vertex_count;   /* of the fused mesh: mates share one vertex */
     uint32_t triangle_count;
-    uint64_t prefix_size;    /* bytes of the file, from its start, that this level needs */
-    uint64_t scratch_size;   /* bytes of scratch for the decode calls on this level */
+    uint64_t prefix_size;  /* bytes of the file, from its start, that this level needs */
+    uint64_t scratch_size; /* bytes of scratch for the decode calls on this level */
 } gim_level_info;
 
 /* level: 0 = full resolution. Reads the image's sideband, so `size` must reach it (a few hundred bytes).
