@@ -42,6 +42,7 @@ constexpr double kUnfolded = 0.2;      // cosine that unfolding is content with
 constexpr int kUnfoldPasses = 4;       // in each round that unfolds
 constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
 constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of these rounds
+constexpr int kLastUnfoldings = 3;     // of a fit that has more folds than its start, before it is given up
 constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding may do harm
 constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost: half a decibel
 constexpr int kMostFreezings = 16;     // further rounds of the guard, in which steps are not halved but given up
@@ -57,6 +58,7 @@ struct Schedule {
 Schedule schedule_of(const FitOptions& options) {
     Schedule schedule = options.strength == FitOptions::Strength::kStiff ? Schedule{0.05, 0.05, 7, 1.5, 2}
                                                                          : Schedule{0.02, 0.0003, 16, 1, 3.5};
+    if (options.thorough && options.strength == FitOptions::Strength::kLoose) schedule = {0.02, 0.0001, 32, 1, 3.5};
     if (options.rounds > 0) schedule.rounds = options.rounds;
     return schedule;
 }
@@ -764,9 +766,9 @@ Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, co
     if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
     // Samples that are relaxed along the surface leave its creases, and not all of them find back. Where that may matter,
     // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
-    const bool compare =
-        before.folds > 0 && (options.strength == FitOptions::Strength::kLoose ||
-                             crease_share(reference, static_cast<double>(gluing.defined_count())) > kCreased);
+    const bool compare = before.folds > 0 && !options.thorough &&
+                         (options.strength == FitOptions::Strength::kLoose ||
+                          crease_share(reference, static_cast<double>(gluing.defined_count())) > kCreased);
     Fitted result;
     result.positions = start;
     FitQuality after = before;
@@ -774,7 +776,11 @@ Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, co
         Fitter fitter = untouched;
         run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
         result.rounds += schedule.rounds;
-        const FitQuality reached = fitter.quality();
+        FitQuality reached = fitter.quality();
+        for (int again = 0; again < kLastUnfoldings && reached.folds > before.folds; ++again) {
+            fitter.unfold();
+            reached = fitter.quality();
+        }
         if (!no_worse(reached, before)) continue;
         if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
             break;  // the unfolded one is better

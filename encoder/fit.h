@@ -23,6 +23,9 @@ struct FitOptions {
         kLoose,  // for lossless and uncompressed images: samples find the surface's creases; +8 to +11 dB
     };
     Strength strength = Strength::kLoose;
+    // For starts that fold over hardly anywhere, like packed charts: the time that comparing ways to unfold them takes goes
+    // into more and looser rounds.
+    bool thorough = false;
     uint32_t rounds = 0;  // 0: as many as the strength needs; more approach the optimum a little further
     uint64_t seed = 1;
     uint32_t threads = 0;         // 0: all cores; the result does not depend on it

@@ -6,6 +6,7 @@
 
 #include "encoder/atlas.h"
 #include "encoder/chart_sample.h"
+#include "encoder/density.h"
 #include "encoder/pack.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
@@ -17,6 +18,9 @@ namespace {
 
 // Edges longer than this part of the root of the surface's area are split, so that charts have faces to choose from.
 constexpr double kLongestEdge = 0.045;
+
+// The part of an image that charts fill; only to judge density by.
+constexpr double kUsualPacking = 0.8;
 
 std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
@@ -43,6 +47,15 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
     atlas_options.parametrize.threads = options.threads;
     GIM_TRY(atlas, build_atlas(fine, topology, {}, atlas_options, clock.progress()));
 
+    const double even_efficiency = stretch_efficiency(atlas.charts, atlas.maps);
+    std::vector<double> importance;
+    if (options.density) {
+        clock.begin(Stage::kParametrize);
+        const auto samples = static_cast<uint32_t>(kUsualPacking * options.samples);
+        GIM_TRY(used, adapt_charts(fine, samples, kChartDensity, atlas_options.parametrize, atlas, clock.progress()));
+        importance = std::move(used);
+    }
+
     PackOptions pack_options;
     pack_options.most_samples = options.samples;
     pack_options.effort = options.pack_effort;
@@ -58,7 +71,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             if (result.packings == kMostPackings)
                 return Error{Stage::kSample, "charts have inlets narrower than a sample; ask for more samples"};
             clock.begin(Stage::kParametrize);
-            GIM_TRY(split, split_charts(fine, topology, {}, atlas_options, packing.broken, std::move(atlas),
+            GIM_TRY(split, split_charts(fine, topology, importance, atlas_options, packing.broken, std::move(atlas),
                                         clock.progress()));
             atlas = std::move(split);
             continue;
@@ -72,7 +85,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             continue;
         }
         result.image = std::move(zipped.value());
-        result.stretch_efficiency = stretch_efficiency(atlas.charts, atlas.maps);
+        result.stretch_efficiency = even_efficiency;
         result.packing_efficiency =
             static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
         result.atlas = std::move(atlas);
@@ -83,6 +96,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
         clock.begin(Stage::kFit);
         FitOptions fit_options;
         fit_options.strength = *options.fit;
+        fit_options.thorough = true;
         fit_options.seed = options.seed;
         fit_options.threads = options.threads;
         GIM_TRY(gluing, glue_charts(result.image.mask, result.image.seams));

@@ -17,6 +17,7 @@ namespace gim {
 struct MultiChartOptions {
     uint32_t charts = 25;       // asked for; more come out where topology or flattening needs them
     uint32_t samples = 66049;   // bound on width * height
+    bool density = true;        // denser where the surface needs it, not even
     uint32_t pack_effort = 30;  // more rounds of search pack more tightly; time grows with them
     std::optional<FitOptions::Strength> fit = FitOptions::Strength::kLoose;  // nothing: samples stay as taken
     uint64_t seed = 1;
@@ -28,7 +29,7 @@ struct MultiChart {
     Atlas atlas;  // what the image was made from
     Packing packing;
     TopologySummary topology;                               // of the mesh
-    double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1
+    double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1, the former of even samples
     uint32_t packings = 1;                                  // how many it took to get one whose seams close
     FitQuality before_fit, after_fit;                       // the same, and not measured, without a fit
 };
