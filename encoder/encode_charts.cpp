@@ -23,6 +23,7 @@ Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, 
     MultiChartOptions chart_options;
     if (options.charts > 0) chart_options.charts = options.charts;
     chart_options.samples = options.samples;
+    chart_options.density = options.density;
     chart_options.fit = fit_strength(options);
     chart_options.seed = options.seed;
     chart_options.threads = options.threads;

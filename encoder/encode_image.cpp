@@ -20,7 +20,7 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
     GIM_TRY(gluing, glue_ring(image.sideband, image.side));
     Mesh surface;
     surface.positions = image.positions;
-    surface.triangles = triangulate_grid(image.positions, image.side, gluing);
+    surface.triangles = triangulate_grid(image.positions, gluing).triangles;
 
     Encoded encoded;
     encoded.report.input_vertices = image.positions.size();

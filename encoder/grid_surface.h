@@ -54,9 +54,5 @@ struct GridFaces {
     std::vector<uint32_t> slot;  // per triangle: 2 * cell, or 2 * cell + 1
 };
 GridFaces triangulate_grid(const std::vector<Vec3>& positions, const GridGluing& gluing);
-// For a caller that is yet to change.
-inline std::vector<Triangle> triangulate_grid(const std::vector<Vec3>& positions, uint32_t, const GridGluing& gluing) {
-    return triangulate_grid(positions, gluing).triangles;
-}
 
 }  // namespace gim
