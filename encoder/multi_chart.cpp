@@ -6,6 +6,7 @@
 
 #include "encoder/atlas.h"
 #include "encoder/chart_sample.h"
+#include "encoder/chart_slits.h"
 #include "encoder/density.h"
 #include "encoder/pack.h"
 #include "encoder/refine.h"
@@ -21,6 +22,8 @@ constexpr double kLongestEdge = 0.045;
 
 // The part of an image that charts fill; only to judge density by.
 constexpr double kUsualPacking = 0.8;
+
+constexpr int kMostSlitRounds = 4;
 
 std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
@@ -54,6 +57,16 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
         const auto samples = static_cast<uint32_t>(kUsualPacking * options.samples);
         GIM_TRY(used, adapt_charts(fine, samples, kChartDensity, atlas_options.parametrize, atlas, clock.progress()));
         importance = std::move(used);
+    }
+
+    for (int round = 0; round < kMostSlitRounds; ++round) {
+        double area = 0;
+        for (const ChartMap& map : atlas.maps) area += map.area;
+        const std::vector<uint32_t> slit = find_slits(std::sqrt(area / (kUsualPacking * options.samples)), atlas);
+        if (slit.empty()) break;
+        GIM_TRY(split,
+                split_charts(fine, topology, importance, atlas_options, slit, std::move(atlas), clock.progress()));
+        atlas = std::move(split);
     }
 
     PackOptions pack_options;
