@@ -17,14 +17,14 @@ class Arena {
     template <class T>
     T* take(size_t count) {
         T* array = memory_ ? reinterpret_cast<T*>(memory_ + used_) : nullptr;
-        used_ += (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+        used_ += (uint64_t{count} * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
         return array;
     }
-    size_t used() const { return used_; }
+    uint64_t used() const { return used_; }  // may be more than a size_t can tell: nobody has that much, then
 
   private:
     std::byte* memory_;
-    size_t used_ = 0;
+    uint64_t used_ = 0;
 };
 
 }  // namespace gim

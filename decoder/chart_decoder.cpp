@@ -336,7 +336,7 @@ Status open_charts(const Header& header, std::span<const uint8_t> file, const Co
                                   });
         s != Status::kOk)
         return s;
-    if (shape->samples > UINT32_MAX) return Status::kLimitExceeded;
+    if (shape->samples > INT32_MAX) return Status::kLimitExceeded;  // flat indices, and triangles, have 32 bits
     shape->chart_count = reader.chart_count();
     shape->path_count = reader.path_count();
     shape->size = reader.level(level);
@@ -350,7 +350,8 @@ Status open_charts(const Header& header, std::span<const uint8_t> file, const Co
     }
     shape->columns = layout.columns();
     shape->rows = layout.rows();
-    return Status::kOk;
+    // Long boxes this way and that make shelves of mostly nothing.
+    return uint64_t{shape->columns} * shape->rows > limits.max_samples ? Status::kLimitExceeded : Status::kOk;
 }
 
 ChartWorkspace lay_out_charts(const ChartLevelShape& shape, Arena* arena) {

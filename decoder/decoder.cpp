@@ -61,7 +61,7 @@ Status open_level(std::span<const uint8_t> file, uint32_t image, uint32_t level,
     return Status::kOk;
 }
 
-size_t scratch_size(uint32_t side) {
+uint64_t scratch_size(uint32_t side) {
     Arena arena(nullptr);
     (void)lay_out(side, &arena);
     return arena.used();
@@ -270,7 +270,7 @@ gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, 
     if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
     if (l.header.layout == FileLayout::kCharts) {
         if (class_of) return code(Status::kBadArgument);
-        return code(count_chart_paths(l.header, span_of(bytes, size), limits_of(&info->limits), path_count));
+        return code(count_chart_paths(l.header, span_of(bytes, size), limits_of(&info->limits), level, path_count));
     }
     if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
     if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});

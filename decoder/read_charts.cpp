@@ -24,7 +24,7 @@ struct Surface {
     }
 };
 
-size_t scratch_size(const ChartLevelShape& shape) {
+uint64_t scratch_size(const ChartLevelShape& shape) {
     Surface surface;
     surface.shape = shape;
     Arena arena(nullptr);
@@ -38,6 +38,20 @@ void set_texcoords(const Header& header, const ChartBox& box, uint32_t column, u
     uv[1] = static_cast<float>(box.atlas_row + static_cast<int32_t>(row)) / static_cast<float>(header.height - 1);
 }
 
+// Boxes may lie partly outside of the rectangle, but nothing that is defined.
+bool lie_in_grid(const ChartLevelShape& shape, const ChartWorkspace& ws) {
+    for (uint32_t c = 0; c < shape.chart_count; ++c) {
+        const DecodedChart& chart = ws.charts[c];
+        for (uint32_t k = 0; k < chart.border.border_length; ++k) {  // what is inside lies between
+            const uint32_t i = chart.border.samples[k];
+            if (chart.grid_column + i % chart.columns >= shape.columns ||
+                chart.grid_row + i / chart.columns >= shape.rows)
+                return false;
+        }
+    }
+    return true;
+}
+
 Status decode(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
               const Memory& scratch, Surface* surface) {
     if (Status s = open_charts(header, file, limits, level, &surface->shape); s != Status::kOk) return s;
@@ -48,6 +62,7 @@ Status decode(const Header& header, std::span<const uint8_t> file, const Contain
     if (Status s = decode_charts(header, file, limits, surface->shape, surface->ws, &surface->samples);
         s != Status::kOk)
         return s;
+    if (!lie_in_grid(surface->shape, surface->ws)) return Status::kMalformed;
     const bool as_told = triangulate_charts(surface->shape, surface->ws, surface->samples, surface->triangles,
                                             surface->shape.size.triangles);
     return as_told ? Status::kOk : Status::kMalformed;
@@ -74,9 +89,9 @@ Status chart_level_info(const Header& header, std::span<const uint8_t> file, con
 }
 
 Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t* path_count) {
+                         uint32_t level, uint32_t* path_count) {
     ChartLevelShape shape;
-    if (Status s = open_charts(header, file, limits, 0, &shape); s != Status::kOk) return s;
+    if (Status s = open_charts(header, file, limits, level, &shape); s != Status::kOk) return s;
     if (path_count) *path_count = shape.path_count;
     return Status::kOk;
 }
@@ -119,7 +134,6 @@ Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, co
             const uint32_t sample = chart.first + i;
             if (surface.ws.depth[sample] == kUndefined) continue;
             const uint32_t column = chart.grid_column + i % chart.columns, row = chart.grid_row + i / chart.columns;
-            if (column >= shape.columns || row >= shape.rows) return Status::kMalformed;
             place[sample] = row * shape.columns + column;
             to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{place[sample]} * 3);
             if (out.texcoords)

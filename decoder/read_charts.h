@@ -18,7 +18,7 @@ Status chart_level_info(const Header& header, std::span<const uint8_t> file, con
                         uint32_t level, gim_level_info* info);
 
 Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t* path_count);
+                         uint32_t level, uint32_t* path_count);
 
 // What gim_decode_mesh and gim_decode_grid give.
 struct SurfaceArrays {

@@ -31,7 +31,7 @@ PlaneWorkspace lay_out(const PlaneLevel& plane, Arena* arena) {
     return ws;
 }
 
-size_t plane_scratch_size(const PlaneLevel& plane) {
+uint64_t plane_scratch_size(const PlaneLevel& plane) {
     Arena arena(nullptr);
     (void)lay_out(plane, &arena);
     return arena.used();

@@ -93,7 +93,9 @@ Status ChartTableReader::read_paths(uint32_t count, uint32_t* mates) {
         }
         if (!bits_.read(1, &bit)) return Status::kMalformed;
         if (mates) mates[path_count_] = kUnmated;
-        if (bit) open_[open_count_++] = static_cast<uint16_t>(path_count_);
+        if (!bit) continue;
+        if (open_count_ == open_.size()) return Status::kMalformed;
+        open_[open_count_++] = static_cast<uint16_t>(path_count_);
     }
     return Status::kOk;
 }

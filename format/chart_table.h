@@ -19,7 +19,7 @@
 namespace gim {
 
 inline constexpr uint32_t kMaxCharts = 8192;
-inline constexpr uint32_t kMaxChartPaths = 16384;  // of all charts; bounds the memory of a ChartTableReader
+inline constexpr uint32_t kMaxChartPaths = 16384;  // of all charts; bounds the memory of a ChartTableReader (16 KiB)
 inline constexpr uint32_t kMaxChartSide = 32768;
 inline constexpr uint32_t kUnmated = UINT32_MAX;  // a path along an input boundary
 
@@ -70,7 +70,8 @@ class ChartTableReader {
     uint32_t chart_count_ = 0, level_count_ = 0, margin_ = 0, box_bits_ = 0, width_ = 0, height_ = 0;
     uint64_t most_samples_ = 0, samples_ = 0;
     uint32_t path_count_ = 0, open_count_ = 0;
-    std::array<uint16_t, kMaxChartPaths> open_{};  // paths that wait for their mate, oldest first
+    // Paths that wait for their mate, oldest first. Where more do than half of all, some wait in vain.
+    std::array<uint16_t, kMaxChartPaths / 2> open_{};
 };
 
 std::vector<uint8_t> serialize_chart_table(const ChartTable& table, const Header& header);

@@ -87,8 +87,10 @@ inline constexpr std::array<BandNorms, 14> kBandNorms = {{
     {17378.896f, 8807.09832f, 6754.24277f},
 }};
 
-// Step of a band's uniform quantizer: quantizer / norm. depth 1: the finest bands of the image.
-inline float low_band_step(float quantizer, uint32_t depth) { return quantizer / kBandNorms[depth - 1].low; }
+// Step of a band's uniform quantizer: quantizer / norm. depth 1: the finest bands of the image; 0, of a low band: the image.
+inline float low_band_step(float quantizer, uint32_t depth) {
+    return depth == 0 ? quantizer : quantizer / kBandNorms[depth - 1].low;
+}
 inline float band_step(float quantizer, uint32_t depth, Orientation orientation) {
     const BandNorms& norms = kBandNorms[depth - 1];
     return quantizer / (orientation == Orientation::kDiagonal ? norms.diagonal : norms.edge);

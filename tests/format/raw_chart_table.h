@@ -1,0 +1,153 @@
+// A chart table and a level's borders, field by field as spec/gim-format.md 11.1 and 11.3 have them, so that tests can write
+// what the encoder never does. Not built upon format/chart_table.cpp and chart_border.h: a second reading of the text.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "encoder/range_encoder.h"
+#include "format/bits.h"
+#include "format/bytes.h"
+
+namespace gim::test {
+
+struct RawChart {
+    uint32_t columns = 2, rows = 2;
+    uint32_t column = 0, row = 0;  // plus margin, as stored
+    uint32_t path_count = 0;       // 0: as many as `paths` says
+    // '-': a boundary, '<': a new open path, '0'..'9': the mate of the open path that many places back.
+    std::string paths = "-";
+};
+
+struct RawTable {
+    uint64_t chart_count = 0;  // 0: as many as there are
+    uint64_t margin = 0;
+    uint32_t box_bits = 4;
+    std::vector<std::array<uint64_t, 2>> sizes;  // vertices and triangles, finest first
+    std::vector<RawChart> charts;
+};
+
+// width, height: of the rectangle in the header.
+inline std::vector<uint8_t> table_bytes(const RawTable& table, uint32_t width, uint32_t height) {
+    std::vector<uint8_t> bytes;
+    append_leb128(table.chart_count ? table.chart_count : table.charts.size(), &bytes);
+    append_leb128(table.margin, &bytes);
+    bytes.push_back(static_cast<uint8_t>(table.box_bits));
+    for (const auto& size : table.sizes) {
+        append_leb128(size[0], &bytes);
+        append_leb128(size[1], &bytes);
+    }
+    BitWriter bits(&bytes);
+    uint32_t open = 0;
+    const auto margin = static_cast<uint32_t>(table.margin);
+    for (const RawChart& chart : table.charts) {
+        bits.write(chart.columns - 1, static_cast<int>(table.box_bits));
+        bits.write(chart.rows - 1, static_cast<int>(table.box_bits));
+        bits.write(chart.column, std::bit_width(width - 1 + margin));
+        bits.write(chart.row, std::bit_width(height - 1 + margin));
+        const auto count = chart.path_count ? chart.path_count : static_cast<uint32_t>(chart.paths.size());
+        bits.write(0, std::bit_width(count) - 1);
+        bits.write(count, std::bit_width(count));
+        for (const char path : chart.paths) {
+            if (path == '-') {
+                bits.write(0, 2);
+            } else if (path == '<') {
+                bits.write(1, 2);
+                ++open;
+            } else {
+                bits.write(1, 1);
+                if (open > 0) bits.write(static_cast<uint32_t>(path - '0'), std::bit_width(open - 1));
+                open -= open > 0;
+            }
+        }
+    }
+    return bytes;
+}
+
+// Writes walks and zippers, right or wrong ones.
+class RawBorderWriter {
+  public:
+    explicit RawBorderWriter(RangeEncoder* coder) : coder_(*coder) {}
+
+    // columns, rows: of the box, for the width of the fields.
+    void begin_chart(uint32_t columns, uint32_t rows, uint32_t column, uint32_t row) {
+        coder_.code_raw(column, static_cast<uint32_t>(std::bit_width(columns - 1)));
+        coder_.code_raw(row, static_cast<uint32_t>(std::bit_width(rows - 1)));
+        turns_ = {};
+        first_ = true;
+    }
+    void length(uint32_t length) { number(length_[0], length - 1); }
+    void length_of_second(uint32_t length, uint32_t first_length) {
+        const auto d = static_cast<int32_t>(length - first_length);
+        number(length_[1], static_cast<uint32_t>(d > 0 ? 2 * d - 1 : -2 * d));
+    }
+    void number_of_second(uint32_t n) { number(length_[1], n); }
+    // A direction of 11.3 per digit.
+    void steps(const std::string& directions) {
+        for (const char c : directions) {
+            const auto direction = static_cast<uint32_t>(c - '0');
+            if (first_) {
+                coder_.code_raw(direction, 3);
+            } else {
+                turn(static_cast<int32_t>((direction - direction_ + 3) & 7) - 3);
+            }
+            first_ = false;
+            direction_ = direction;
+        }
+    }
+    // A step of 11.3 per digit; those that are not coded are given too.
+    void zipper(int64_t first, int64_t second, const std::string& steps) {
+        const int64_t longer = first > second ? first : second;
+        int64_t a = first, b = second;
+        uint32_t last = 0;
+        for (const char c : steps) {
+            const auto step = static_cast<uint32_t>(c - '0');
+            if (a > 0 && b > 0) {
+                const int64_t lag = 2 * (a * second - b * first), size = lag < 0 ? -lag : lag;
+                uint32_t phase = 0;
+                if (size >= longer) phase = (lag > 0 ? 1u : 3u) + (size >= 3 * longer ? 1u : 0u);
+                coder_.code_bit(zip_[0][5 * last + phase], step != 0);
+                if (step != 0) coder_.code_bit(zip_[1][5 * last + phase], step == 2);
+            }
+            a -= step != 2;
+            b -= step != 1;
+            last = step;
+        }
+    }
+
+  private:
+    void number(std::array<BitModel, 25>& models, uint32_t n) {
+        const auto width = static_cast<uint32_t>(std::bit_width(n + 1)) - 1;
+        for (uint32_t w = 0; w < width; ++w) coder_.code_bit(models[w], 1);
+        if (width == 25) return;  // no longer read
+        coder_.code_bit(models[width], 0);
+        if (width > 0) coder_.code_raw(n + 1 - (1u << width), width);
+    }
+    void turn(int32_t t) {
+        const auto sign = [](int32_t x) { return x < 0 ? 0u : x == 0 ? 1u : 2u; };
+        const uint32_t q = turns_[0] > 1 ? 4 : turns_[0] < -1 ? 3 : sign(turns_[0]);
+        auto& models = turn_[(q * 3 + sign(turns_[1])) * 3 + sign(turns_[2])];
+        turns_ = {t, turns_[0], turns_[1]};
+        coder_.code_bit(models[0], t != 0);
+        if (t == 0) return;
+        coder_.code_bit(models[1], t < 0);
+        const auto size = static_cast<uint32_t>(t < 0 ? -t : t);
+        for (uint32_t k = 1; k < 3; ++k) {
+            coder_.code_bit(models[1 + k], size > k);
+            if (size <= k) break;
+        }
+    }
+
+    RangeEncoder& coder_;
+    std::array<std::array<BitModel, 4>, 45> turn_;
+    std::array<std::array<BitModel, 25>, 2> length_;
+    std::array<std::array<BitModel, 15>, 2> zip_;
+    std::array<int32_t, 3> turns_{};
+    uint32_t direction_ = 0;
+    bool first_ = true;
+};
+
+}  // namespace gim::test
