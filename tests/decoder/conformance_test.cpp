@@ -34,6 +34,7 @@ TEST(Conformance, ValidFilesDecodeToTheExpectedBits) {
         EXPECT_FALSE(decoded.samples.empty());
         EXPECT_EQ(to_bytes(decoded.samples), read_bytes(fs::path(path).replace_extension(".f32")));
         EXPECT_EQ(to_bytes(decoded.triangles), read_bytes(fs::path(path).replace_extension(".tri")));
+        EXPECT_EQ(to_bytes(decoded.vertices), read_bytes(fs::path(path).replace_extension(".vtx")));
         EXPECT_EQ(to_bytes(decoded.planes), read_bytes(fs::path(path).replace_extension(".pln")));
     }
 }
@@ -70,6 +71,7 @@ TEST(Conformance, NoDamagedByteChangesTheSurfaceUnnoticed) {
             const Decoded damaged = decode_all(file);
             if (damaged.status == GIM_OK) {
                 ASSERT_EQ(to_bytes(damaged.samples), to_bytes(whole.samples)) << "byte " << i;
+                ASSERT_EQ(damaged.triangles, whole.triangles) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.planes), to_bytes(whole.planes)) << "byte " << i;
             }
             file[i] = kept;

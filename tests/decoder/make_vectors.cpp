@@ -6,15 +6,20 @@
 #include <functional>
 #include <limits>
 
+#include "corpus/corpus.h"
 #include "encoder/code_bands.h"
+#include "encoder/multi_chart.h"
 #include "encoder/wavelet_analysis.h"
+#include "encoder/write_charts.h"
 #include "encoder/write_gim.h"
 #include "format/checksum.h"
 #include "format/plane_code.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "tests/decoder/vectors.h"
+#include "tests/encoder/made_charts.h"
 #include "tests/format/random_sideband.h"
+#include "tests/format/raw_chart_table.h"
 
 namespace gim {
 namespace {
@@ -85,6 +90,16 @@ Bytes encode(const std::vector<GeometryImage>& images, const CodingParameters& p
         std::abort();
     }
     return file.value();
+}
+
+// Values of undefined samples come from a search with floats: on another machine they may differ, and so may these bytes.
+Bytes encode(const ChartImages& charts, const CodingParameters& parameters) {
+    auto writer = ChartFileWriter::create(charts, parameters);
+    if (!writer.ok()) {
+        std::fprintf(stderr, "charts: %s\n", writer.error().message.c_str());
+        std::abort();
+    }
+    return writer.value().write(parameters.quantizer);
 }
 
 // A plane of whole numbers: a slope in the first component, a hill and stripes in the others.
@@ -190,6 +205,7 @@ class Writer {
         write_bytes(folder_ / "valid" / (name + ".gim"), file);
         write_bytes(folder_ / "valid" / (name + ".f32"), to_bytes(decoded.samples));
         write_bytes(folder_ / "valid" / (name + ".tri"), to_bytes(decoded.triangles));
+        write_bytes(folder_ / "valid" / (name + ".vtx"), to_bytes(decoded.vertices));
         if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
     }
     void invalid(const std::string& name, const Bytes& file) {
@@ -259,6 +275,40 @@ void write_valid(Writer& out) {
                   p.chunks[0].zstd = true;  // whatever is in it, it is skipped
                   p.chunks[0].raw_size = 1u << 20;
               }));
+}
+
+// A sheet of no volume but with a handle: of the encoder's own making, with borders as ragged as they come.
+ChartImages charts_of_the_encoder() {
+    const TriangleMesh torus = corpus::torus(24, 12, 1, 0.4);
+    Mesh mesh;
+    for (const auto& p : torus.positions) mesh.positions.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles = torus.triangles;
+    StageClock clock({});
+    MultiChartOptions options;
+    options.charts = 4;
+    options.samples = 1500;
+    options.pack_effort = 2;
+    auto made = make_multi_chart_image(mesh, options, clock);
+    if (!made.ok()) std::abort();
+    const MultiChart& m = made.value();
+    return std::move(make_chart_images(m.image, m.atlas, m.packing, m.topology, 3, 1).value());
+}
+
+void write_valid_charts(Writer& out) {
+    out.valid("charts-pillow-lossless", encode(pillow(5, 5, 2), lossless(10, 3)));
+    out.valid("charts-pillow-lossy", encode(pillow(8, 8, 3), lossy(12, 3, 6)));
+    out.valid("charts-unequal-lossless", encode(pillow(8, 6, 2), lossless(12, 3)));
+    out.valid("charts-unequal-lossy", encode(pillow(9, 6, 2), lossy(12, 3, 40)));
+    out.valid("charts-open-lossless", encode(open_sheet(2), lossless(9, 3)));
+    out.valid("charts-open-lossy", encode(open_sheet(2), lossy(12, 3, 25)));
+    out.valid("charts-torus-lossless", encode(torus_of_one_chart(17, 3), lossless(12, 3)));
+    out.valid("charts-torus-lossy", encode(torus_of_one_chart(33, 3), lossy(12, 3, 30)));
+    // Boxes that no wavelet halves.
+    out.valid("charts-ladder-lossless",
+              encode(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNone}, 1), lossless(8, 3)));
+    out.valid("charts-ladder-lossy",
+              encode(made_images(12, 3, {rectangle_chart(12, 2, 3)}, {kNone, kNone, kNone}, 1), lossy(12, 3, 3)));
+    out.valid("charts-encoder-lossy", encode(charts_of_the_encoder(), lossy(12, 3, 12)));
 }
 
 void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {
@@ -404,6 +454,125 @@ void write_invalid_planes(Writer& out) {
     out.invalid("malformed.plane-size-table-cut-off", with_parts(two, [](Parts& p) { p.payloads.back().resize(8); }));
 }
 
+// One chart of 4 x 3 samples in a rectangle of that size, its border one path.
+RawTable one_chart() {
+    RawTable table;
+    table.sizes = {{12, 12}};
+    table.charts = {{4, 3, 0, 0, 0, "-"}};
+    return table;
+}
+constexpr const char* kRoundTheBox = "0002244466";
+
+void write_invalid_chart_tables(Writer& out, const Bytes& file) {
+    const auto header = [&](const char* name, const std::function<void(Header&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.header); }));
+    };
+    header("malformed.charts-width-1", [](Header& h) { h.width = 1; });
+    header("malformed.charts-height-65537", [](Header& h) { h.height = 65537; });
+    header("limit-exceeded.charts-side", [](Header& h) { h.width = 16386; });
+    header("limit-exceeded.charts-samples", [](Header& h) { h.width = h.height = 8193; });
+
+    const auto table = [&](const char* name, const std::function<void(RawTable&, Header&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) {
+                        RawTable t = one_chart();
+                        change(t, p.header);
+                        p.payloads[0] = table_bytes(t, p.header.width, p.header.height);
+                        while (p.payloads.size() <= p.header.level_count) insert_chunk(&p, 1, 1, false, {});
+                    }));
+    };
+    table("malformed.charts-none", [](RawTable& t, Header&) { t.charts.clear(); });
+    table("malformed.charts-8193", [](RawTable& t, Header&) { t.charts.resize(kMaxCharts + 1, t.charts[0]); });
+    table("malformed.charts-margin-4097", [](RawTable& t, Header&) { t.margin = 4097; });
+    table("malformed.charts-box-bits-0", [](RawTable& t, Header&) { t.box_bits = 0; });
+    table("malformed.charts-box-bits-16", [](RawTable& t, Header&) { t.box_bits = 16; });
+    table("malformed.charts-vertices-2", [](RawTable& t, Header&) { t.sizes[0][0] = 2; });
+    table("malformed.charts-vertices-more-than-samples", [](RawTable& t, Header&) { t.sizes[0][0] = 13; });
+    table("malformed.charts-vertices-one-less", [](RawTable& t, Header&) { t.sizes[0][0] = 11; });
+    table("malformed.charts-triangles-0", [](RawTable& t, Header&) { t.sizes[0][1] = 0; });
+    table("malformed.charts-triangles-more-than-cells", [](RawTable& t, Header&) { t.sizes[0][1] = 25; });
+    table("malformed.charts-triangles-one-less", [](RawTable& t, Header&) { t.sizes[0][1] = 11; });
+    table("malformed.charts-triangles-one-more", [](RawTable& t, Header&) { t.sizes[0][1] = 13; });
+    table("malformed.charts-one-column", [](RawTable& t, Header&) { t.charts[0].columns = 1; });
+    table("malformed.charts-column-too-far", [](RawTable& t, Header&) { t.margin = 3, t.charts[0].column = 7; });
+    table("malformed.charts-outside-the-rectangle", [](RawTable& t, Header&) { t.charts[0].column = 1; });
+    table("malformed.charts-outside-on-the-left", [](RawTable& t, Header&) { t.margin = 1; });
+    table("malformed.charts-mate-of-nothing", [](RawTable& t, Header&) { t.charts[0].paths = "0"; });
+    table("malformed.charts-far-mate-of-nothing", [](RawTable& t, Header&) { t.charts[0].paths = "<<<3"; });
+    table("malformed.charts-open-path-left", [](RawTable& t, Header&) { t.charts[0].paths = "<"; });
+    table("malformed.charts-paths-16385", [](RawTable& t, Header&) { t.charts[0].paths.assign(16385, '-'); });
+    table("malformed.charts-fewer-steps-than-levels", [](RawTable& t, Header& h) {
+        h.level_count = 3;
+        t.sizes.resize(3, {4, 2});
+    });
+    table("limit-exceeded.charts-boxes", [](RawTable& t, Header&) {
+        t.box_bits = 15;
+        t.charts[0].columns = 1u << 15;
+        t.charts[0].rows = (1u << 11) + 1;
+    });
+    const auto payload = [&](const char* name, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads[0]); }));
+    };
+    payload("malformed.charts-table-empty", [](Bytes& b) { b.clear(); });
+    payload("malformed.charts-table-cut-off", [](Bytes& b) { b.pop_back(); });
+    payload("malformed.charts-table-trailing-byte", [](Bytes& b) { b.push_back(0); });
+    payload("malformed.charts-table-padding", [](Bytes& b) { b.back() |= 1; });
+    payload("malformed.charts-paths-number-too-long",
+            [](Bytes& b) { b.resize(7), b.resize(11, 0), b.push_back(0xFF); });
+}
+
+void write_invalid_borders(Writer& out, const Bytes& file) {
+    const auto border = [&](const char* name, const std::function<void(RawBorderWriter&)>& write,
+                            const char* paths = "-") {
+        out.invalid(name, with_parts(file, [&](Parts& p) {
+                        RawTable t = one_chart();
+                        t.charts[0].paths = paths;
+                        p.payloads[0] = table_bytes(t, p.header.width, p.header.height);
+                        RangeEncoder coder;
+                        RawBorderWriter writer(&coder);
+                        write(writer);
+                        p.payloads[1] = coder.finish();
+                    }));
+    };
+    const auto walk = [&](const char* name, uint32_t column, uint32_t row, const std::string& directions) {
+        border(name, [&](RawBorderWriter& w) {
+            w.begin_chart(4, 3, column, row);
+            w.length(static_cast<uint32_t>(directions.size()));
+            w.steps(directions);
+        });
+    };
+    walk("malformed.charts-border-begins-outside", 0, 3, "036");
+    walk("malformed.charts-border-leaves-the-box", 1, 0, kRoundTheBox);
+    walk("malformed.charts-border-leaves-on-the-left", 1, 0, "2444400066");
+    walk("malformed.charts-border-not-closed", 0, 0, "000224446");
+    walk("malformed.charts-border-twice-round", 0, 0, "024602460246");
+    walk("malformed.charts-border-longer-than-the-box", 0, 0, "0246024602460246");
+    border("malformed.charts-border-no-length", [](RawBorderWriter& w) {
+        w.begin_chart(4, 3, 0, 0);
+        w.length((1u << 25) - 1);
+    });
+    const auto second = [&](const char* name, uint32_t coded) {
+        border(
+            name,
+            [&](RawBorderWriter& w) {
+                w.begin_chart(4, 3, 0, 0);
+                w.length(5);
+                w.steps("00022");
+                w.number_of_second(coded);
+                w.steps("44466");
+                w.zipper(5, 5, "00000");
+            },
+            "<0");
+    };
+    second("malformed.charts-mate-of-length-0", 10);
+    second("malformed.charts-mate-too-long", 5);
+    const auto stream = [&](const char* name, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads[1]); }));
+    };
+    stream("malformed.charts-stream-empty", [](Bytes& b) { b.clear(); });
+    stream("malformed.charts-stream-of-ones", [](Bytes& b) { b.assign(64, 0xFF); });
+    stream("malformed.charts-stream-halved", [](Bytes& b) { b.resize(b.size() / 2); });
+}
+
 void write_invalid_payloads(Writer& out, const Bytes& plain, const Bytes& sphere, const Bytes& torus_file) {
     const auto seams = [&](const char* name, const Bytes& from, Bytes payload) {
         out.invalid(name, with_parts(from, [&](Parts& p) { p.payloads[0] = std::move(payload); }));
@@ -459,6 +628,7 @@ int main(int argc, char** argv) {
     }
     Writer out(folder);
     write_valid(out);
+    write_valid_charts(out);
     const Bytes plain = encode({hill(5, open_square(), 0, 1)}, lossless(8, 5));
     const Bytes sphere = encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5));
     const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
@@ -466,5 +636,8 @@ int main(int argc, char** argv) {
     write_invalid_container(out, plain, fine);
     write_invalid_planes(out);
     write_invalid_payloads(out, plain, sphere, torus_file);
+    const Bytes chart = encode(made_images(4, 3, {rectangle_chart(4, 3, 1)}, {kNone}, 1), lossless(12, 3));
+    write_invalid_chart_tables(out, chart);
+    write_invalid_borders(out, chart);
     return out.fine() ? 0 : 1;
 }

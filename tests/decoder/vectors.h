@@ -17,8 +17,9 @@ namespace gim::test {
 // All levels that can be closed of all images, in order, then the planes; the first failure ends it.
 struct Decoded {
     gim_status status = GIM_OK;
-    std::vector<float> samples;       // of gim_decode_positions
+    std::vector<float> samples;       // of gim_decode_grid
     std::vector<uint32_t> triangles;  // of gim_decode_mesh
+    std::vector<float> vertices;      // normals, then texture coordinates, of gim_decode_mesh
     std::vector<float> planes;        // of gim_decode_plane
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
@@ -30,18 +31,22 @@ inline gim_status decode_one(const gim_info& info, const std::vector<uint8_t>& f
     if (found != GIM_OK) return found;
     *coarsest = l.coarsest_level;
     out->prefix = out->prefix > l.prefix_size ? out->prefix : l.prefix_size;
-    std::vector<float> samples(size_t{l.side} * l.side * 3), vertices(size_t{l.vertex_count} * 3);
-    std::vector<uint32_t> triangles(size_t{l.triangle_count} * 3);
+    const size_t grid_size = size_t{l.width} * l.height, vertex_count = l.vertex_count;
+    std::vector<float> samples(grid_size * 3), grid_normals(grid_size * 3), grid_texcoords(grid_size * 2);
+    std::vector<float> positions(vertex_count * 3), normals(vertex_count * 3), texcoords(vertex_count * 2);
+    std::vector<uint32_t> triangles(size_t{l.triangle_count} * 3), grid_triangles(triangles.size());
     std::vector<std::max_align_t> scratch(l.scratch_size / sizeof(std::max_align_t) + 1);
     const size_t scratch_size = scratch.size() * sizeof(std::max_align_t);
-    gim_status s = gim_decode_positions(&info, file.data(), file.size(), image, level, samples.data(), scratch.data(),
-                                        scratch_size);
+    gim_status s = gim_decode_grid(&info, file.data(), file.size(), image, level, samples.data(), grid_normals.data(),
+                                   grid_texcoords.data(), grid_triangles.data(), scratch.data(), scratch_size);
     if (s == GIM_OK)
-        s = gim_decode_mesh(&info, file.data(), file.size(), image, level, vertices.data(), nullptr, nullptr,
-                            triangles.data(), scratch.data(), scratch_size);
+        s = gim_decode_mesh(&info, file.data(), file.size(), image, level, positions.data(), normals.data(),
+                            texcoords.data(), triangles.data(), scratch.data(), scratch_size);
     if (s != GIM_OK) return s;
     out->samples.insert(out->samples.end(), samples.begin(), samples.end());
     out->triangles.insert(out->triangles.end(), triangles.begin(), triangles.end());
+    out->vertices.insert(out->vertices.end(), normals.begin(), normals.end());
+    out->vertices.insert(out->vertices.end(), texcoords.begin(), texcoords.end());
     return GIM_OK;
 }
 
