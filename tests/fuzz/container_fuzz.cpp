@@ -1,16 +1,73 @@
-// libFuzzer: header, index, sidebands. The checksum of header and index is made right first, so that what is behind it is
+// libFuzzer: header, index, sidebands, chart tables and borders. The checksum of header and index is made right first, so that what is behind it is
 // reached.
 #include <algorithm>
 #include <array>
 #include <vector>
 
+#include "decoder/range_decoder.h"
+#include "format/chart_border.h"
+#include "format/chart_table.h"
 #include "format/checksum.h"
 #include "format/container.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 
+namespace {
+
+using namespace gim;
+
+// The bytes as a chart table of that rectangle, and as the borders of a level of it.
+void read_charts(std::span<const uint8_t> bytes, uint32_t width, uint32_t height, uint32_t level_count) {
+    Header header;
+    header.layout = FileLayout::kCharts;
+    header.width = width;
+    header.height = height;
+    header.level_count = level_count;
+    ContainerLimits limits;
+    limits.max_samples = 1 << 16;
+    ChartTableReader reader;
+    std::vector<uint32_t> mates(kMaxChartPaths);
+    if (reader.open(bytes, header, limits) != Status::kOk) return;
+    std::vector<ChartBox> charts(reader.chart_count());
+    for (ChartBox& chart : charts)
+        if (reader.next(&chart, mates.data()) != Status::kOk) return;
+    if (reader.finish() != Status::kOk) return;
+    std::vector<BorderPath> paths(reader.path_count());
+    for (uint32_t p = 0; p < paths.size(); ++p) {
+        if (mates[p] != kUnmated && (mates[p] >= paths.size() || mates[mates[p]] != p)) __builtin_trap();
+        paths[p].mate = mates[p];
+    }
+    RangeDecoder decoder(bytes);
+    BorderModels models;
+    BorderCoder<RangeDecoder> coder(&decoder, &models);
+    uint32_t path = 0;
+    for (const ChartBox& chart : charts) {
+        BorderChart border;
+        border.columns = chart.columns;
+        border.rows = chart.rows;
+        border.first_path = path;
+        border.path_count = chart.path_count;
+        std::vector<uint32_t> samples(size_t{chart.columns} * chart.rows);
+        border.samples = samples.data();
+        if (!coder.code_border(border, paths.data())) return;
+        for (uint32_t k = 0; k < border.border_length && k < samples.size(); ++k)
+            if (samples[k] >= samples.size()) __builtin_trap();
+        for (const uint32_t end = path + chart.path_count; path < end; ++path) {
+            if (mates[path] >= path) continue;
+            const BorderPath &first = paths[mates[path]], &second = paths[path];
+            (void)coder.code_zipper(
+                first, second, [] { return ZipStep::kBoth; },
+                [&](uint32_t i, uint32_t j) {
+                    if (i > first.length || j > second.length) __builtin_trap();
+                });
+        }
+    }
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    using namespace gim;
+    if (size > 4) read_charts({data + 4, size - 4}, data[0] + 2u, data[1] + 2u, data[2] % kMaxLevels + 1u);
     std::vector<uint8_t> bytes(data, data + size);
     ByteReader reader(bytes);
     uint64_t index_size = 0;

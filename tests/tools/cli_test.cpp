@@ -1,10 +1,15 @@
 // The gim program as its users meet it: exit status, what stands on stdout and stderr, what is left on the disk.
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -203,6 +208,99 @@ TEST_F(Cli, APrefixDecodesTheCoarseLevels) {
     const Outcome decode = gim({"decode", folder.file("prefix.gim"), folder.file("coarse.ply"), "--level",
                                 std::to_string(coarsest["level"].get<int>())});
     EXPECT_EQ(decode.status, 0) << decode.err;
+}
+
+// ---- several charts -----------------------------------------------------------------------------------------------------
+
+TEST_F(Cli, ChartsGoAllTheWay) {
+    const std::string file = folder.file("charts.gim");
+    const Outcome encode = gim({"encode", mesh_path(), file, "--layout", "mcgim", "--samples", "3000", "--charts", "5",
+                                "--json", folder.file("report.json")});
+    ASSERT_EQ(encode.status, 0) << encode.err;
+    const json report = json::parse(load_text(folder.file("report.json")));
+    EXPECT_EQ(report["layout"], "mcgim");
+    EXPECT_GE(report["charts"], 5);
+    EXPECT_LE(report["samples"], 3000);
+
+    const Outcome info = gim({"info", file, "--json"});
+    ASSERT_EQ(info.status, 0) << info.err;
+    const json description = json::parse(info.out);
+    EXPECT_EQ(description["layout"], "mcgim");
+    EXPECT_TRUE(description["intact"]);
+    const json levels = description["images"][0]["levels"];
+    ASSERT_GE(levels.size(), 2U);
+    EXPECT_EQ(gim({"info", file}).status, 0);
+    for (const json& level : levels) {
+        const std::string number = std::to_string(level["level"].get<int>());
+        for (const std::string extension : {"ply", "obj", "off", "stl", "glb"}) {
+            const std::string path = folder.file("torus" + number + "." + extension);
+            const Outcome decode = gim({"decode", file, path, "--level", number});
+            ASSERT_EQ(decode.status, 0) << decode.err;
+            const Outcome compare = gim({"compare", file, path, "--json", "--samples", "1000"});
+            ASSERT_EQ(compare.status, 0) << extension << ": " << compare.err;
+            const json topology = json::parse(compare.out)["test"]["topology"];
+            EXPECT_TRUE(topology["watertight"]) << extension << " level " << number;
+            EXPECT_EQ(topology["genus"], 1) << extension << " level " << number;
+            EXPECT_EQ(topology["triangles"], level["triangles"]) << extension << " level " << number;
+            EXPECT_EQ(topology["vertices"], level["vertices"]) << extension << " level " << number;
+        }
+    }
+    const Outcome beyond = gim({"decode", file, folder.file("x.ply"), "--level", std::to_string(levels.size())});
+    EXPECT_EQ(beyond.status, 1);
+    EXPECT_NE(beyond.err.find("coarsest level"), std::string::npos) << beyond.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("x.ply")));
+
+    // A prefix is enough for a coarse level.
+    save(folder.file("prefix.gim"), load_text(file).substr(0, levels.back()["prefix_bytes"].get<size_t>()));
+    EXPECT_EQ(gim({"decode", folder.file("prefix.gim"), folder.file("coarse.ply"), "--level",
+                   std::to_string(levels.size() - 1)})
+                  .status,
+              0);
+    EXPECT_EQ(gim({"decode", folder.file("prefix.gim"), folder.file("fine.ply")}).status, 1);
+}
+
+TEST_F(Cli, UndefinedSamplesAreMaskedInImagesAndAbsentFromMeshes) {
+    const std::string file = folder.file("charts.gim"), image = folder.file("charts.exr");
+    ASSERT_EQ(
+        gim({"encode", mesh_path(), file, "--layout", "mcgim", "--samples", "2000", "--charts", "4", "--quiet"}).status,
+        0);
+    const json levels = json::parse(gim({"info", file, "--json"}).out)["images"][0]["levels"];
+    for (const json& level : {levels.front(), levels.back()}) {
+        ASSERT_EQ(gim({"decode", file, image, "--level", std::to_string(level["level"].get<int>())}).status, 0);
+        Imf::InputFile exr(image.c_str());
+        const Imath::Box2i window = exr.header().dataWindow();
+        const auto width = static_cast<size_t>(window.max.x - window.min.x + 1),
+                   height = static_cast<size_t>(window.max.y - window.min.y + 1);
+        EXPECT_EQ(width, level["width"]);
+        EXPECT_EQ(height, level["height"]);
+        std::vector<float> x(width * height), mask(width * height);
+        Imf::FrameBuffer buffer;
+        const auto slice = [&](std::vector<float>& to) {
+            return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(to.data()), sizeof(float), sizeof(float) * width);
+        };
+        buffer.insert("X", slice(x));
+        buffer.insert("mask", slice(mask));
+        exr.setFrameBuffer(buffer);
+        exr.readPixels(window.min.y, window.max.y);
+        size_t defined = 0;
+        for (size_t i = 0; i < x.size(); ++i) {
+            EXPECT_TRUE(mask[i] == 0 || mask[i] == 1);
+            EXPECT_EQ(std::isnan(x[i]), mask[i] == 0) << i;
+            defined += mask[i] != 0;
+        }
+        EXPECT_GT(defined, x.size() / 4);
+        EXPECT_LT(defined, x.size());
+    }
+    ASSERT_EQ(gim({"decode", file, folder.file("charts.obj")}).status, 0);
+    EXPECT_EQ(load_text(folder.file("charts.obj")).find("nan"), std::string::npos);
+    // All numbers of a GLB are words of four bytes, and its text is ASCII: none of them may look like a NaN.
+    ASSERT_EQ(gim({"decode", file, folder.file("charts.glb")}).status, 0);
+    const std::string glb = load_text(folder.file("charts.glb"));
+    for (size_t i = 0; i + 4 <= glb.size(); i += 4) {
+        float number = 0;
+        std::memcpy(&number, &glb[i], 4);
+        ASSERT_FALSE(std::isnan(number)) << i;
+    }
 }
 
 // ---- what cannot be encoded --------------------------------------------------------------------------------------------
