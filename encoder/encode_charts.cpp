@@ -21,7 +21,7 @@ constexpr uint32_t kMostLevels = 8;
 Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
     MultiChartOptions chart_options;
-    if (options.charts > 0) chart_options.charts = options.charts;
+    chart_options.charts = options.charts;
     chart_options.samples = options.samples;
     chart_options.density = options.density;
     chart_options.fit = fit_strength(options);

@@ -22,8 +22,10 @@
 #include <span>
 
 #include "encoder/closest_point.h"
+#include "encoder/creases.h"
 #include "encoder/grid_surface.h"
 #include "encoder/parallel.h"
+#include "encoder/refine.h"
 #include "encoder/result.h"
 #include "encoder/stencil_solver.h"
 #include "encoder/surface_samples.h"
@@ -717,22 +719,10 @@ bool no_worse(const FitQuality& after, const FitQuality& before) {
 
 double distance(const FitQuality& quality) { return std::max(quality.to_image, quality.to_reference); }
 
-// The part of the surface within a mean sample spacing of edges sharper than 60 degrees: much of it on machined parts,
-// hardly any on scans.
-double crease_share(const Reference& reference, double samples) {
-    const std::vector<Triangle>& triangles = reference.mesh.triangles;
-    const EdgeTable edges = build_edge_table(triangles, reference.mesh.positions.size());
-    double area = 0, sharp = 0;
-    for (uint32_t f = 0; f < triangles.size(); ++f) area += face_area(reference.mesh, f);
-    for (size_t e = 0; e < edges.size(); ++e) {
-        const auto around = edges.around(e);
-        if (around.size() != 2) continue;
-        if (reference.normals[around[0] / 3].dot(reference.normals[around[1] / 3]) > 0.5) continue;
-        sharp += (reference.mesh.positions[to(reference.mesh, around[0])] -
-                  reference.mesh.positions[from(reference.mesh, around[0])])
-                     .norm();
-    }
-    return area > 0 ? 2 * sharp / std::sqrt(area * samples) : 0;
+// The part of the surface within a mean sample spacing of creases.
+double crease_share(const Mesh& mesh, double samples) {
+    const double area = surface_area(mesh);
+    return area > 0 ? 2 * crease_length(mesh) / std::sqrt(area * samples) : 0;
 }
 
 // What the first rounds do besides.
@@ -768,7 +758,7 @@ Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, co
     // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
     const bool compare = before.folds > 0 && !options.thorough &&
                          (options.strength == FitOptions::Strength::kLoose ||
-                          crease_share(reference, static_cast<double>(gluing.defined_count())) > kCreased);
+                          crease_share(reference.mesh, static_cast<double>(gluing.defined_count())) > kCreased);
     Fitted result;
     result.positions = start;
     FitQuality after = before;

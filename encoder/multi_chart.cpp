@@ -7,6 +7,7 @@
 #include "encoder/atlas.h"
 #include "encoder/chart_sample.h"
 #include "encoder/chart_slits.h"
+#include "encoder/creases.h"
 #include "encoder/density.h"
 #include "encoder/pack.h"
 #include "encoder/refine.h"
@@ -39,13 +40,19 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
 
 }  // namespace
 
+uint32_t automatic_charts(const Mesh& mesh, uint32_t samples) {
+    const double creases = crease_length(mesh) / std::sqrt(surface_area(mesh));
+    const double charts = std::min(16 + 3 * creases, 48.0) * std::pow(samples / 65536.0, 0.25);
+    return static_cast<uint32_t>(std::clamp(std::round(charts), 6.0, 100.0));
+}
+
 Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
     clock.begin(Stage::kCut);
     const Mesh fine = refine_long_edges(mesh, kLongestEdge * std::sqrt(surface_area(mesh)));
     const Topology topology = build_topology(fine);
     const TopologySummary wanted = analyse_topology(fine.triangles, fine.positions.size()).summary;
     AtlasOptions atlas_options;
-    atlas_options.chartify.charts = options.charts;
+    atlas_options.chartify.charts = options.charts > 0 ? options.charts : automatic_charts(mesh, options.samples);
     atlas_options.chartify.seed = options.seed;
     atlas_options.parametrize.threads = options.threads;
     GIM_TRY(atlas, build_atlas(fine, topology, {}, atlas_options, clock.progress()));

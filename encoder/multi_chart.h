@@ -15,7 +15,7 @@
 namespace gim {
 
 struct MultiChartOptions {
-    uint32_t charts = 25;       // asked for; more come out where topology or flattening needs them
+    uint32_t charts = 0;        // asked for, 0: chosen; more come out where topology or flattening needs them
     uint32_t samples = 66049;   // bound on width * height
     bool density = true;        // denser where the surface needs it, not even
     uint32_t pack_effort = 30;  // more rounds of search pack more tightly; time grows with them
@@ -23,6 +23,12 @@ struct MultiChartOptions {
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the result does not depend on it
 };
+
+// How many charts to ask for. Because charts that do not flatten are split anyway and density adapts, it matters little
+// (Figure 13 of the paper, here 65,000 samples and 8 to 60 charts: 0.2 dB on horse, gargoyle and feline), except in two
+// cases: with few samples, where seams take up more of them (gargoyle, 10,000 samples: 1.8 dB from 10 to 40 charts), and on
+// machined parts, whose creases charts should end at (fandisk, 10,000 samples: 3.6 dB; 65,000: 0.5 dB).
+uint32_t automatic_charts(const Mesh& mesh, uint32_t samples);
 
 struct MultiChart {
     MultiChartImage image;

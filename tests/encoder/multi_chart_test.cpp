@@ -106,6 +106,19 @@ TEST(MultiChart, FitBringsTheImageNearerAndKeepsTheSurface) {
     }
 }
 
+TEST(MultiChart, AutomaticChartsFollowCreasesAndSamples) {
+    const Mesh smooth = surface_named("tori-2"), creased = surface_named("plate-5");
+    EXPECT_GT(automatic_charts(creased, 65536), automatic_charts(smooth, 65536));
+    EXPECT_GT(automatic_charts(smooth, 65536), automatic_charts(smooth, 10000));
+    EXPECT_GE(automatic_charts(smooth, 100), 6u);
+    Mesh larger = creased;
+    for (Vec3& p : larger.positions) p *= 1000;
+    EXPECT_EQ(automatic_charts(larger, 65536), automatic_charts(creased, 65536));
+    const auto made = image_of(smooth, 0, 8000);
+    ASSERT_TRUE(made.ok());
+    EXPECT_GE(made.value().atlas.charts.size(), 4u);
+}
+
 TEST(MultiChart, TooFewSamplesAreRefused) { EXPECT_FALSE(image_of(surface_named("plate-5"), 8, 60).ok()); }
 
 TEST(MultiChart, ModelsOfEveryKindComeBackWithTheirTopology) {
