@@ -123,6 +123,22 @@ Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
     return serialize_plane(quantizer, exponents, streams);
 }
 
+// The same of a rectangle of charts, 2^exponent samples per sample of it and direction.
+Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quantizer, float first) {
+    const uint32_t columns = ((width - 1) << exponent) + 1, rows = ((height - 1) << exponent) + 1;
+    std::vector<float> values;
+    for (uint32_t r = 0; r < rows; ++r) {
+        for (uint32_t c = 0; c < columns; ++c) {
+            values.push_back(first + static_cast<float>(3 * c + 5 * r));
+            values.push_back(static_cast<float>((c * c + 3 * r) % 64));
+            values.push_back(static_cast<float>(r / 4 % 2 * 24) - 12.0f);
+        }
+    }
+    Pyramid<int32_t> bands =
+        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), quantizer);
+    return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1));
+}
+
 // ---- files in parts --------------------------------------------------------------------------------------------------
 
 struct Parts {
@@ -294,6 +310,13 @@ void write_valid_charts(Writer& out, const Bytes& kept) {
     out.valid("charts-ladder-lossy",
               encode(made_images(12, 3, {rectangle_chart(12, 2, 3)}, {kNone, kNone, kNone}, 1), lossy(12, 3, 3)));
     out.valid("charts-encoder-lossy", kept);
+    // As fine as the rectangle and finer.
+    CodingParameters planes = lossy(10, 3, 30);
+    planes.planes = {{ChunkType::kNormals, chart_plane(17, 11, 0, 20, -30)},
+                     {ChunkType::kColors, chart_plane(17, 11, 1, 10, 40)}};
+    out.valid("charts-open-planes", encode(open_sheet(2), planes));
+    planes.planes = {{ChunkType::kColors, chart_plane(2, 9, 0, 4, 40)}};
+    out.valid("charts-ladder-planes", encode(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNone}, 1), planes));
 }
 
 void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {
@@ -505,6 +528,23 @@ void write_invalid_chart_tables(Writer& out, const Bytes& file) {
             [](Bytes& b) { b.resize(7), b.resize(11, 0), b.push_back(0xFF); });
 }
 
+void write_invalid_chart_planes(Writer& out) {
+    CodingParameters parameters = lossless(9, 3);
+    parameters.planes = {{ChunkType::kColors, chart_plane(17, 11, 0, 10, 40)}};
+    const Bytes file = encode(open_sheet(2), parameters);
+    const auto changed = [&](const char* name, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads.back()); }));
+    };
+    changed("unsupported-version.charts-plane-coding-1", [](Bytes& b) { b[0] = 1; });
+    changed("malformed.charts-plane-exponent-7", [](Bytes& b) { b[5] = 7; });
+    changed("malformed.charts-plane-no-exponent", [](Bytes& b) { b.resize(5); });
+    changed("malformed.charts-plane-magnitude-too-large", [](Bytes& b) { b.resize(6), b.resize(70, 0xFF); });
+    parameters.planes = {{ChunkType::kColors, chart_plane(600, 3, 0, 10, 40)}};
+    out.invalid("limit-exceeded.charts-plane-side",
+                with_parts(encode(made_images(600, 3, {rectangle_chart(4, 3, 1)}, {kNone}, 1), parameters),
+                           [](Parts& p) { p.payloads.back()[5] = 5; }));
+}
+
 void write_invalid_borders(Writer& out, const Bytes& file) {
     const auto border = [&](const char* name, const std::function<void(RawBorderWriter&)>& write,
                             const char* paths = "-") {
@@ -625,5 +665,6 @@ int main(int argc, char** argv) {
     const Bytes chart = encode(made_images(4, 3, {rectangle_chart(4, 3, 1)}, {kNone}, 1), lossless(12, 3));
     write_invalid_chart_tables(out, chart);
     write_invalid_borders(out, chart);
+    write_invalid_chart_planes(out);
     return out.fine() ? 0 : 1;
 }

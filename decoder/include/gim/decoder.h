@@ -122,7 +122,7 @@ GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size
                                    void* scratch, size_t scratch_size);
 
 /* The same level as a grid mesh for texturing: width*height vertices in row-major order, samples on seams repeated with
- * equal positions and normals; undefined ones are in no triangle. The rest as in gim_decode_mesh, triangles indexing
+ * equal positions and normals; undefined ones are in no triangle, their normals and texcoords 0. The rest as in gim_decode_mesh, triangles indexing
  * samples. normals, texcoords and triangles may be NULL. */
 GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                    float* positions, float* normals, float* texcoords, uint32_t* triangles,
