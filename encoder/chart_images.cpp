@@ -14,6 +14,10 @@ namespace gim {
 
 namespace {
 
+// Boxes of all charts together may have this many times the samples of the rectangle. The margins that the coarsest levels
+// need would else make them far larger than what they hold.
+constexpr uint64_t kMostBoxes = 4;
+
 // A box's lattice: at level L its sample (column, row) is the point (column, row) * 2^L + origin of the rectangle.
 struct Lattice {
     int64_t column = 0, row = 0;
@@ -45,6 +49,16 @@ struct Extent {
     }
 };
 
+// A chart that is too small for its cut-nodes at its scale, or no disk, may grow: there is room in its box, and its samples
+// beyond the border go on smoothly.
+std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const ChartPose& pose, size_t least_border) {
+    for (const double band : {0.5, 0.8, 1.1, 1.5}) {
+        ChartMask mask = rasterize_chart_on_lattice(border, pose, band);
+        if (mask.is_disk && mask.border_length >= least_border) return mask;
+    }
+    return std::nullopt;
+}
+
 // Rasterises a chart at the coarser levels and finds the box that holds them all. Levels are numbered from 1 up to the
 // last at which the chart is a disk with room for its cut-nodes.
 ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPose& pose, const Extent& finest,
@@ -60,8 +74,9 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
         ChartPose coarse = pose;
         coarse.scale *= shrink;
         coarse.offset = (pose.offset - Vec2(double(pyramid.origin.column), double(pyramid.origin.row))) * shrink;
-        ChartMask mask = rasterize_chart_on_lattice(border, coarse);
-        if (!mask.is_disk || mask.border_length < std::max<size_t>(4, chart.paths.size())) break;
+        std::optional<ChartMask> made = coarse_mask(border, coarse, std::max<size_t>(4, chart.paths.size()));
+        if (!made) break;
+        ChartMask& mask = *made;
         const Vec2 corner = coarse.offset - mask.pose.offset;
         pyramid.corners.push_back({std::llround(corner.x()), std::llround(corner.y())});
         const Lattice& first = pyramid.corners.back();
@@ -82,8 +97,10 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
         pyramid.corners[level - 1].column += left >> level;
         pyramid.corners[level - 1].row += above >> level;
     }
-    pyramid.columns = static_cast<uint32_t>(extent.last_column + left + 1);
-    pyramid.rows = static_cast<uint32_t>(extent.last_row + above + 1);
+    // Large enough to be halved as often as there are levels.
+    const int64_t least = (int64_t{1} << pyramid.masks.size()) + 1;
+    pyramid.columns = static_cast<uint32_t>(std::max(extent.last_column + left + 1, least));
+    pyramid.rows = static_cast<uint32_t>(std::max(extent.last_row + above + 1, least));
     return pyramid;
 }
 
@@ -172,11 +189,16 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
         }
     }
     std::vector<ChartPyramid> pyramids(count);
-    parallel_blocks(count, 1, threads, [&](size_t, size_t begin, size_t end) {
-        for (size_t c = begin; c < end; ++c)
-            pyramids[c] =
-                make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c], most_levels);
-    });
+    for (;; --most_levels) {
+        parallel_blocks(count, 1, threads, [&](size_t, size_t begin, size_t end) {
+            for (size_t c = begin; c < end; ++c)
+                pyramids[c] =
+                    make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c], most_levels);
+        });
+        uint64_t samples = 0;
+        for (const ChartPyramid& p : pyramids) samples += uint64_t{p.columns} * p.rows;
+        if (most_levels <= 1 || samples <= kMostBoxes * image.mask.defined.size()) break;
+    }
 
     ChartImages result;
     result.image = image;

@@ -10,7 +10,6 @@ namespace gim {
 
 namespace {
 
-// Half the width of the band around the border whose samples belong to the chart.
 constexpr double kBand = 0.5;
 // Holes of at most this many samples are filled: they are inlets narrower than a sample.
 constexpr size_t kLargestFilledHole = 4;
@@ -90,18 +89,18 @@ void fill_interior(const std::vector<Vec2>& polygon, SampleMask& mask) {
     }
 }
 
-void fill_band(const std::vector<Vec2>& polygon, SampleMask& mask) {
+void fill_band(const std::vector<Vec2>& polygon, double band, SampleMask& mask) {
     for (size_t i = 0; i < polygon.size(); ++i) {
         const Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const Vec2 low = (a.cwiseMin(b).array() - kBand).ceil().cwiseMax(0),
-                   high = (a.cwiseMax(b).array() + kBand).floor();
+        const Vec2 low = (a.cwiseMin(b).array() - band).ceil().cwiseMax(0),
+                   high = (a.cwiseMax(b).array() + band).floor();
         const Vec2 edge = b - a;
         const double length2 = edge.squaredNorm();
         for (double row = low.y(); row <= high.y() && row < mask.height; ++row) {
             for (double column = low.x(); column <= high.x() && column < mask.width; ++column) {
                 const Vec2 p(column, row);
                 const double t = length2 > 0 ? std::clamp((p - a).dot(edge) / length2, 0.0, 1.0) : 0;
-                if ((p - a - t * edge).squaredNorm() <= kBand * kBand)
+                if ((p - a - t * edge).squaredNorm() <= band * band)
                     mask.defined[static_cast<size_t>(row) * mask.width + static_cast<size_t>(column)] = 1;
             }
         }
@@ -357,10 +356,10 @@ ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double 
     Vec2 low = pose(border[0]);
     for (const Vec2& p : border) low = low.cwiseMin(pose(p));
     pose.offset = -low;
-    return rasterize_chart_on_lattice(border, pose);
+    return rasterize_chart_on_lattice(border, pose, kBand);
 }
 
-ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose) {
+ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band) {
     ChartMask chart;
     chart.pose = pose;
     std::vector<Vec2> polygon;
@@ -368,16 +367,16 @@ ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const Char
     for (const Vec2& p : border) polygon.push_back(pose(p));
     Vec2 low = polygon[0], high = low;
     for (const Vec2& p : polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    constexpr double kMargin = 3;  // room for the band and the dilation
-    const Vec2 shift = Vec2(kMargin, kMargin) - Vec2(low.array().floor());
+    const double margin = std::ceil(band) + 2;  // room for the band and the dilation
+    const Vec2 shift = Vec2(margin, margin) - Vec2(low.array().floor());
     chart.pose.offset += shift;
     for (Vec2& p : polygon) p += shift;
-    const Vec2 extent = (high + shift).array().ceil() + kMargin + 1;
+    const Vec2 extent = (high + shift).array().ceil() + margin + 1;
     chart.mask.width = static_cast<uint32_t>(extent.x());
     chart.mask.height = static_cast<uint32_t>(extent.y());
     chart.mask.defined.assign(size_t{chart.mask.width} * chart.mask.height, 0);
     fill_interior(polygon, chart.mask);
-    fill_band(polygon, chart.mask);
+    fill_band(polygon, band, chart.mask);
     dilate_to_manifold(chart.mask);
     for (bool again = true; again;) {
         fill_small_holes(chart.mask);

@@ -50,7 +50,8 @@ struct ChartMask {
 // In: the border of a chart's map, counter-clockwise, not touching itself. O(area + border in samples).
 ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double angle);
 // The same with samples where the pose has whole coordinates: the result's offset differs from the pose's by whole numbers.
-ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose);
+// band: how near to the border samples outside belong to the chart, 0.5 in the function above.
+ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band = 0.5);
 
 // ---- the triangles of a mask --------------------------------------------------------------------------------------
 

@@ -44,7 +44,7 @@ void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& 
 }  // namespace
 
 Result<std::vector<GeometryImage>> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                               const Observer& observer, EncodeReport& report) {
+                                                      const Observer& observer, EncodeReport& report) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
     std::vector<double> areas;

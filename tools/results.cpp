@@ -100,9 +100,8 @@ std::string row(const std::string& model, const Setting& setting, const Triangle
     const EncodeReport& r = encoded.value().report;
     std::snprintf(line, sizeof(line), "%s,%s,%u,%u,%u,%.3f,%llu,%llu,%.2f,%.4g,%.4g,%.4g,%.4f,%llu,%llu,%zu,%.2f,%.1f",
                   model.c_str(), setting.name, r.width, r.height, r.charts, r.charts > 0 ? r.packing_efficiency : 1.0,
-                  static_cast<unsigned long long>(r.input_vertices),
-                  static_cast<unsigned long long>(r.file_bytes), r.error.psnr, r.error.rms_to_test,
-                  r.error.rms_to_reference, r.error.hausdorff, r.stretch_efficiency,
+                  static_cast<unsigned long long>(r.input_vertices), static_cast<unsigned long long>(r.file_bytes),
+                  r.error.psnr, r.error.rms_to_test, r.error.rms_to_reference, r.error.hausdorff, r.stretch_efficiency,
                   static_cast<unsigned long long>(r.folds_before_fit), static_cast<unsigned long long>(r.folds),
                   r.levels.size(), decode_milliseconds(encoded.value().bytes), r.seconds);
     return line;
