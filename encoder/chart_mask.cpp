@@ -384,12 +384,16 @@ ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const Char
         dilate_to_manifold(chart.mask);
     }
     cut_spikes(chart.mask);
+    trim(chart);
+    return chart;
+}
+
+void trim(ChartMask& chart) {
     crop(chart);
     chart.is_disk = mask_is_disk(chart.mask);
     chart.defined = static_cast<uint32_t>(chart.mask.count());
     const auto loops = trace_borders(chart.mask);
     chart.border_length = loops.empty() ? 0 : static_cast<uint32_t>(loops[0].size());
-    return chart;
 }
 
 }  // namespace gim

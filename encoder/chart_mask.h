@@ -52,6 +52,8 @@ ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double 
 // The same with samples where the pose has whole coordinates: the result's offset differs from the pose's by whole numbers.
 // band: how near to the border samples outside belong to the chart, 0.5 in the function above.
 ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band = 0.5);
+// After samples were taken away: cuts the rectangle down to the others, moves the pose along and counts anew.
+void trim(ChartMask& chart);
 
 // ---- the triangles of a mask --------------------------------------------------------------------------------------
 

@@ -237,7 +237,7 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 
 // Keeps a border from running into itself: weight * (reach / d - 1)^2 for every border vertex and border edge that are
 // closer than `reach` in the plane but not along the border.
-class BorderBarrier {
+class BorderBarrier : public BorderForce {
   public:
     BorderBarrier(const Chart& chart, double weight) : loop_(chart.loop), weight_(weight) {
         std::vector<double> edge(loop_.size());
@@ -278,7 +278,7 @@ class BorderBarrier {
         return true;
     }
 
-    double energy(const std::vector<Vec2>& uv) const {
+    double energy(const std::vector<Vec2>& uv) const override {
         double sum = 0;
         const bool simple = for_each_close(uv, [&](const auto&, double, double d, const Vec2&) {
             sum += weight_ * (reach_ / d - 1) * (reach_ / d - 1);
@@ -286,9 +286,7 @@ class BorderBarrier {
         return simple ? sum : std::numeric_limits<double>::infinity();
     }
 
-    // add(vertex, gradient, hessian block): the Hessian is bounded from above by a block-diagonal one.
-    template <class Add>
-    void derivatives(const std::vector<Vec2>& uv, const Add& add) const {
+    void derivatives(const std::vector<Vec2>& uv, const Add& add) const override {
         for_each_close(uv, [&](const std::array<uint32_t, 3>& v, double t, double d, const Vec2& n) {
             const double first = -2 * weight_ * (reach_ / d - 1) * reach_ / (d * d);
             const double second =
@@ -322,7 +320,7 @@ class BorderBarrier {
 class Newton {
   public:
     // `barrier` may be null: the border is free to run over itself then.
-    Newton(const Mesh& mesh, const std::vector<Element>& elements, const BorderBarrier* barrier, std::vector<Vec2>& uv)
+    Newton(const Mesh& mesh, const std::vector<Element>& elements, const BorderForce* barrier, std::vector<Vec2>& uv)
         : mesh_(mesh),
           elements_(elements),
           barrier_(barrier),
@@ -450,7 +448,7 @@ class Newton {
 
     const Mesh& mesh_;
     const std::vector<Element>& elements_;
-    const BorderBarrier* barrier_;
+    const BorderForce* barrier_;
     std::vector<Vec2>& uv_;
     std::vector<Eigen::Triplet<double>> entries_;
     Eigen::SparseMatrix<double> hessian_;
@@ -473,7 +471,32 @@ std::vector<Element> elements_of(const Mesh& mesh, const std::vector<double>& im
     return elements;
 }
 
+void measure_map(const Mesh& mesh, const std::vector<Element>& elements, ChartMap& map) {
+    map.energy = map.area = 0;
+    for (size_t f = 0; f < elements.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        const double area = twice_signed_area(map.uv[t[0]], map.uv[t[1]], map.uv[t[2]]) / 2;
+        map.area += area;
+        map.energy += energy(elements[f], jacobian(elements[f], map.uv[t[0]], map.uv[t[1]], map.uv[t[2]])) - area;
+    }
+}
+
 }  // namespace
+
+void measure_map(const Chart& chart, const std::vector<double>& importance, ChartMap& map) {
+    measure_map(chart.mesh, elements_of(chart.mesh, importance), map);
+}
+
+ChartMap relax_chart(const Chart& chart, const std::vector<double>& importance, ChartMap map, double area_weight,
+                     const BorderForce& force, const ChartParametrizeOptions& options) {
+    const std::vector<Element> elements = elements_of(chart.mesh, importance);
+    // Less weight on the area is more on all the rest.
+    std::vector<Element> pressed = elements;
+    for (Element& e : pressed) e.importance /= area_weight;
+    Newton(chart.mesh, pressed, &force, map.uv).run(options.most_steps, options.tolerance);
+    measure_map(chart.mesh, elements, map);
+    return map;
+}
 
 Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>& importance,
                                    const ChartParametrizeOptions& options) {
@@ -489,15 +512,7 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
         for (const uint32_t v : chart.loop) border.push_back(map.uv[v]);
         return find_crossing(border);
     };
-    const auto measure = [&] {
-        map.energy = map.area = 0;
-        for (size_t f = 0; f < elements.size(); ++f) {
-            const Triangle& t = mesh.triangles[f];
-            const double area = twice_signed_area(map.uv[t[0]], map.uv[t[1]], map.uv[t[2]]) / 2;
-            map.area += area;
-            map.energy += energy(elements[f], jacobian(elements[f], map.uv[t[0]], map.uv[t[1]], map.uv[t[2]])) - area;
-        }
-    };
+    const auto measure = [&] { measure_map(mesh, elements, map); };
     const auto start_from_circle = [&] { return tutte(chart, total_area, map.uv); };
     const Error unsolvable{Stage::kParametrize, "a chart of " + std::to_string(mesh.triangles.size()) +
                                                     " triangles could not be flattened; is it a disk?"};
@@ -534,13 +549,7 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
     uint64_t flipped = 0;
     for (const Triangle& t : mesh.triangles)
         flipped += !(twice_signed_area(map.uv[t[0]], map.uv[t[1]], map.uv[t[2]]) > 0);
-    if (flipped > 0) {
-        const Vec3& p = mesh.positions[mesh.triangles[0][0]];
-        return Error{Stage::kParametrize, std::to_string(flipped) + " triangles of the chart near (" +
-                                              std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " +
-                                              std::to_string(p.z()) +
-                                              ") could not be kept upright; remove slivers there"};
-    }
+    if (flipped > 0) map.overlaps = true;
     return map;
 }
 

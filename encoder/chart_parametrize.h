@@ -22,6 +22,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -43,7 +44,9 @@ struct ChartMap {
     double energy = 0;     // integral of the squared stretch over the surface (times importance)
     double area = 0;       // of the map
     double surface = 0;    // area on the surface
-    bool overlaps = false;  // not even the slow way found a border that keeps clear of itself: split the chart
+    bool overlaps =
+        false;  // not even the slow way found a border that keeps clear of itself, or triangles could not be
+                // kept upright: split the chart
     // Two faces of the chart whose borders would run into each other if they could. The map is then the best without
     // overlap that was found, `strain` (1 or more) how much worse than with it; apart, the two would flatten better.
     std::optional<std::array<uint32_t, 2>> crossing;
@@ -56,6 +59,26 @@ struct ChartMap {
 // Fails only when not even Tutte's map can be solved. In: a disk.
 Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>& importance,
                                    const ChartParametrizeOptions& options);
+
+// A force on the border of a chart beside the map's own energy.
+class BorderForce {
+  public:
+    virtual ~BorderForce() = default;
+    // Infinite where the map is not allowed.
+    virtual double energy(const std::vector<Vec2>& uv) const = 0;
+    // add(vertex, gradient, a bound from above on the vertex's block of the Hessian)
+    using Add = std::function<void(uint32_t, const Vec2&, const Eigen::Matrix2d&)>;
+    virtual void derivatives(const std::vector<Vec2>& uv, const Add& add) const = 0;
+};
+
+// Takes the map's energy and area anew.
+void measure_map(const Chart& chart, const std::vector<double>& importance, ChartMap& map);
+
+// Goes on from a map that is upright: the energy with the chart's area counting `area_weight` times what it takes up, and
+// a force on its border. With less than 1 the chart presses outwards, as there is room to be had. Never flips a triangle;
+// a crossing of the border with itself is the force's affair.
+ChartMap relax_chart(const Chart& chart, const std::vector<double>& importance, ChartMap map, double area_weight,
+                     const BorderForce& force, const ChartParametrizeOptions& options);
 
 // Every chart. `importance` per face of the surface (empty: 1).
 Result<std::vector<ChartMap>> parametrize_charts(const std::vector<Chart>& charts,

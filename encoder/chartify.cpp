@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <queue>
 #include <set>
 
@@ -100,6 +101,9 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
     std::vector<Vec3> normal_sum;
     std::priority_queue<Entry> queue;
     std::vector<uint32_t> refused;
+    constexpr double kSharp = 0.5;  // cosine between faces from which on a chart rather ends than goes on
+    const double chart_size = std::sqrt(std::accumulate(graph.area.begin(), graph.area.end(), 0.0) /
+                                        static_cast<double>(result.seeds.size()));
     const auto take = [&](uint32_t f, uint32_t chart, double cost) {
         partition.assign(f, chart);
         result.last_face = f;
@@ -111,7 +115,8 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
             if (n == kNone || partition[n] != kNone || (!in_region.empty() && !in_region[n])) continue;
             const double step =
                 (planarity - normal.dot(graph.normal[n])) * (graph.centroid[n] - graph.centroid[f]).norm();
-            queue.push({cost + std::max(step, 0.0), n, chart});
+            const double crease = std::max(0.0, kSharp - graph.normal[f].dot(graph.normal[n])) * chart_size;
+            queue.push({cost + std::max(step, 0.0) + crease, n, chart});
         }
     };
     for (uint32_t c = 0; c < result.seeds.size(); ++c) {

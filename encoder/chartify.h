@@ -7,7 +7,8 @@
 // We differ: (1) while bootstrapping, several seeds are added per round (a fifth of those present), which saves most of
 // the rounds; (2) a face that no chart may take becomes a seed on the spot, so that every round ends with all faces
 // assigned; (3) charts forced on us beyond the number asked for are merged again where two make one disk; (4) borders
-// are straightened at the end by handing single faces over wherever that shortens the border.
+// are straightened at the end by handing single faces over wherever that shortens the border; (5) crossing a crease costs
+// extra, so that charts may be round (a larger lambda) and still end at creases.
 //
 // In:  an oriented 2-manifold, any number of components and boundaries. Every chart that comes out is a disk whose
 //      border is a simple loop (it does not touch itself, not even at a vertex).
@@ -26,7 +27,7 @@ namespace gim {
 struct ChartifyOptions {
     uint32_t charts = 25;    // asked for; more come out where topology needs them (two per closed component, handles)
     uint64_t seed = 1;       // chooses the first seed face
-    double planarity = 1.0;  // the paper's lambda: larger = rounder, less flat charts
+    double planarity = 2.0;  // the paper's lambda, there 1: larger = rounder, less flat charts, which pack more tightly
     int most_rounds = 60;    // Lloyd rounds after bootstrapping, at most; usually 10 to 30 suffice
 };
 

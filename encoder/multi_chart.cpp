@@ -9,6 +9,7 @@
 #include "encoder/chart_slits.h"
 #include "encoder/creases.h"
 #include "encoder/density.h"
+#include "encoder/inflate.h"
 #include "encoder/pack.h"
 #include "encoder/refine.h"
 #include "encoder/result.h"
@@ -36,6 +37,13 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
         shapes.push_back(std::move(shape));
     }
     return shapes;
+}
+
+// What the maps' efficiency is inverse to.
+double total_cost(const std::vector<ChartMap>& maps) {
+    double energy = 0, area = 0;
+    for (const ChartMap& map : maps) energy += map.energy, area += map.area;
+    return energy * area;
 }
 
 }  // namespace
@@ -96,8 +104,12 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             atlas = std::move(split);
             continue;
         }
-        auto zipped =
-            zip(sample_charts(atlas.charts, atlas.maps, packing, options.threads), atlas.charts, atlas.maps, packing);
+        // Packed again, if it comes to that, they are as they were.
+        std::vector<ChartMap> maps = atlas.maps;
+        InflateOptions inflate_options;
+        inflate_options.threads = options.threads;
+        inflate(atlas.charts, importance, inflate_options, maps, packing);
+        auto zipped = zip(sample_charts(atlas.charts, maps, packing, options.threads), atlas.charts, maps, packing);
         if (!zipped.ok()) {
             // Samples fall elsewhere in another packing.
             if (result.packings == kMostPackings) return zipped.error();
@@ -105,7 +117,8 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             continue;
         }
         result.image = std::move(zipped.value());
-        result.stretch_efficiency = even_efficiency;
+        result.stretch_efficiency = even_efficiency * total_cost(atlas.maps) / total_cost(maps);
+        atlas.maps = std::move(maps);
         result.packing_efficiency =
             static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
         result.atlas = std::move(atlas);

@@ -10,45 +10,14 @@
 #include <string>
 
 #include "encoder/parallel.h"
+#include "encoder/piece.h"
 #include "encoder/result.h"
+#include "encoder/squeeze.h"
 #include "encoder/surface_samples.h"
 
 namespace gim {
 
 namespace {
-
-// A chart in one orientation, as runs of samples, longest first: the long ones rule positions out soonest.
-struct Piece {
-    struct Run {
-        uint32_t row, column, length;
-    };
-    uint32_t width = 0, height = 0;
-    double centre = 0;  // mean row of its samples
-    std::vector<Run> runs;
-    ChartMask chart;
-};
-
-Piece make_piece(ChartMask chart) {
-    Piece piece;
-    const SampleMask& mask = chart.mask;
-    piece.width = mask.width;
-    piece.height = mask.height;
-    for (uint32_t row = 0; row < mask.height; ++row) {
-        for (uint32_t column = 0; column < mask.width; ++column) {
-            if (!mask.at(column, row)) continue;
-            const uint32_t first = column;
-            while (mask.at(column, row)) ++column;
-            piece.runs.push_back({row, first, column - first});
-            piece.centre += static_cast<double>(row) * (column - first) / chart.defined;
-        }
-    }
-    std::stable_sort(piece.runs.begin(), piece.runs.end(),
-                     [](const Piece::Run& a, const Piece::Run& b) { return a.length > b.length; });
-    piece.chart = std::move(chart);
-    return piece;
-}
-
-using Shape = std::vector<Piece>;  // one piece per usable orientation
 
 // A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set when any of the 2^k samples from x on
 // is taken or next to a taken one.
@@ -69,7 +38,7 @@ class Strip {
         const uint32_t last = width_ - piece.width;
         for (uint32_t w = 0; w < words_; ++w) blocked[w] = ~low_bits(w, last + 1);
         size_t countdown = 4;
-        for (const Piece::Run& run : piece.runs) {
+        for (const PieceRun& run : piece.scan) {
             const uint32_t k = static_cast<uint32_t>(std::bit_width(run.length)) - 1;
             const uint64_t* source = level(k, row + run.row);
             or_shifted(blocked, source, run.column);
@@ -83,7 +52,7 @@ class Strip {
     }
 
     void put(const Piece& piece, uint32_t column, uint32_t row) {
-        for (const Piece::Run& run : piece.runs) {
+        for (const PieceRun& run : piece.runs) {
             const uint32_t y = row + run.row, x = column + run.column;
             set(y, x > 0 ? x - 1 : 0, std::min(x + run.length + 1, width_));
             if (y > 0) set(y - 1, x, x + run.length);
@@ -135,10 +104,6 @@ class Strip {
     std::vector<uint64_t> bits_;
 };
 
-struct Spot {
-    uint32_t orientation = 0, column = 0, row = 0;
-};
-
 // How one packing is made: the strip's width, the order of the charts, and what "low" means for each: 1, the lowest top
 // edge; 0, the lowest centre of gravity.
 struct Recipe {
@@ -148,7 +113,7 @@ struct Recipe {
 };
 
 struct Attempt {
-    std::vector<Spot> spots;  // empty: higher than the limit
+    std::vector<PieceSpot> spots;  // empty: higher than the limit
     uint32_t height = 0;
     double crowding = 0;  // mean top edge, of equal heights the lower is the better
 };
@@ -161,7 +126,7 @@ Attempt try_recipe(const std::vector<Shape>& shapes, const Recipe& recipe, uint3
     std::vector<uint64_t> blocked;
     for (const uint32_t c : recipe.order) {
         double best_cost = std::numeric_limits<double>::infinity();
-        Spot best;
+        PieceSpot best;
         const double weight = recipe.top_weight[c];
         for (uint32_t o = 0; o < shapes[c].size(); ++o) {
             const Piece& piece = shapes[c][o];
@@ -196,38 +161,29 @@ class Packer {
         for (const PackShape& shape : input_)
             area += polygon_area(shape.border) * shape.magnification * shape.magnification;
         if (!(area > 0)) return Error{Stage::kSample, "the charts have no area to pack"};
-        // Search at one scale for the recipe with the smallest rectangle ...
+        // A first packing at one scale ...
         constexpr double kSmaller = 0.85;
-        double scale = std::sqrt(0.75 * options_.most_samples / area) / kSmaller;
+        double scale = std::sqrt(0.8 * options_.most_samples / area) / kSmaller;
         std::vector<Candidate> best;
         for (int trial = 0; best.empty(); ++trial) {
             if (trial == 8) return no_room();
             scale *= kSmaller;
             if (!rasterize(scale) || !all_short()) return report_broken();
-            best = explore(progress);
+            best = explore();
         }
-        // ... then enlarge the charts until it is just as large as allowed.
-        double low = 0, high = std::numeric_limits<double>::infinity();
-        std::optional<Packing> packed;
-        scale *= std::sqrt(options_.most_samples / best[0].area());
-        for (int round = 0; round < 40 && high / std::max(low, 1e-300) > 1 + kFinestScaleStep; ++round) {
-            if (!rasterize(scale)) return report_broken();
-            auto found = fit_bound(best, scale);
-            if (found) {
-                low = scale;
-                packed = std::move(found);
-                scale = std::isfinite(high) ? (low + high) / 2 : scale * 1.006;
-            } else {
-                high = scale;
-                scale = low > 0 ? (low + high) / 2 : scale * 0.99;
-            }
-        }
-        if (!packed) return no_room();
-        return std::move(*packed);
+        // ... squeezed, and enlarged until it is just as large as allowed.
+        SqueezeOptions squeeze_options;
+        squeeze_options.most_moves = uint64_t{options_.effort} * kMovesPerEffort;
+        squeeze_options.seed = options_.seed;
+        squeeze_options.most_aspect = options_.most_aspect;
+        if (progress) progress(Stage::kSample, 0.1);
+        const PieceLayout layout = squeeze_several(best, squeeze_options);
+        if (progress) progress(Stage::kSample, 0.8);
+        return enlarge(layout, scale, squeeze_options);
     }
 
   private:
-    static constexpr double kFinestScaleStep = 0.0007;
+    static constexpr uint32_t kMovesPerEffort = 200, kFirstRounds = 4;
 
     struct Candidate {
         Recipe recipe;
@@ -256,33 +212,50 @@ class Packer {
         return static_cast<uint32_t>(random_ % count);
     }
 
-    // All charts in all orientations. A chart with no usable one grows by itself.
-    bool rasterize(double scale) {
-        shapes_.assign(input_.size(), {});
-        std::vector<uint8_t> broken(input_.size(), 0);
-        parallel_blocks(input_.size(), 1, options_.threads, [&](size_t, size_t begin, size_t end) {
-            for (size_t c = begin; c < end; ++c) {
-                // A border that is too short grows with the chart; an inlet may or may not open.
-                constexpr int kMostGrowths = 40, kMostGrowthsOfNoDisk = 6;
-                double magnification = input_[c].magnification;
-                for (int growth = 0, no_disk = 0; growth <= kMostGrowths && no_disk <= kMostGrowthsOfNoDisk; ++growth) {
-                    bool any_disk = false;
-                    for (uint32_t o = 0; o < options_.orientations; ++o) {
-                        const double angle = 2 * std::numbers::pi * o / options_.orientations;
-                        ChartMask chart = rasterize_chart(input_[c].border, scale * magnification, angle);
-                        any_disk |= chart.is_disk;
-                        if (chart.is_disk && chart.border_length >= input_[c].least_border)
-                            shapes_[c].push_back(make_piece(std::move(chart)));
-                    }
-                    if (!shapes_[c].empty()) break;
-                    no_disk += !any_disk;
-                    magnification *= 1.1;
-                }
-                broken[c] = shapes_[c].empty();
+    // Coarse enough to try all places quickly, fine enough to tell good ones from bad ones.
+    static uint32_t coarse_cell(double samples) {
+        constexpr double kFewestCells = 64;
+        uint32_t cell = 2;
+        while (cell < 16 && 4.0 * cell * cell * kFewestCells < samples) cell *= 2;
+        return cell;
+    }
+    // Chart c in all orientations, or in a few about `angle` if there is one and one of those can be used. A chart with
+    // no usable one grows by itself; empty when that does not help.
+    Shape rasterize(uint32_t c, double scale, const double* angle) const {
+        // A border that is too short grows with the chart; an inlet may or may not open.
+        constexpr int kMostGrowths = 40, kMostGrowthsOfNoDisk = 6;
+        const double turn = 2 * std::numbers::pi / options_.orientations, near = 2.5 * turn;
+        double magnification = input_[c].magnification;
+        const uint32_t cell = coarse_cell(polygon_area(input_[c].border) * scale * scale);
+        Shape shape;
+        for (int growth = 0, no_disk = 0; growth <= kMostGrowths && no_disk <= kMostGrowthsOfNoDisk; ++growth) {
+            bool any_disk = false;
+            for (uint32_t o = 0; o < options_.orientations; ++o) {
+                if (angle && std::cos(o * turn - *angle) < std::cos(near)) continue;
+                ChartMask chart = rasterize_chart(input_[c].border, scale * magnification, o * turn);
+                any_disk |= chart.is_disk;
+                if (chart.is_disk && chart.border_length >= input_[c].least_border)
+                    shape.push_back(make_piece(std::move(chart), cell));
             }
+            if (!shape.empty()) return shape;
+            if (angle) {
+                angle = nullptr;
+                continue;
+            }
+            no_disk += !any_disk;
+            magnification *= 1.1;
+        }
+        return shape;
+    }
+    // All charts. `angles`, one for each, or none: close to which to keep.
+    bool rasterize(double scale, const std::vector<double>& angles = {}) {
+        shapes_.assign(input_.size(), {});
+        parallel_blocks(input_.size(), 1, options_.threads, [&](size_t c, size_t, size_t) {
+            const double* angle = angles.empty() ? nullptr : &angles[c];
+            shapes_[c] = rasterize(static_cast<uint32_t>(c), scale, angle);
         });
-        for (uint32_t c = 0; c < broken.size(); ++c) {
-            if (broken[c]) broken_.push_back(c);
+        for (uint32_t c = 0; c < shapes_.size(); ++c) {
+            if (shapes_[c].empty()) broken_.push_back(c);
         }
         return broken_.empty();
     }
@@ -324,7 +297,7 @@ class Packer {
     }
 
     // A beam of the best recipes, varied over and over.
-    std::vector<Candidate> explore(const Progress& progress) {
+    std::vector<Candidate> explore() {
         std::vector<Recipe> recipes;
         std::vector<uint32_t> order(shapes_.size());
         std::iota(order.begin(), order.end(), 0u);
@@ -333,7 +306,7 @@ class Packer {
         });
         constexpr int kWidths = 12;
         for (int k = 0; k <= kWidths; ++k) {
-            const double aspect = std::pow(options_.most_aspect * 0.97, 2.0 * k / kWidths - 1);
+            const double aspect = std::pow(std::min(2.0, options_.most_aspect * 0.97), 2.0 * k / kWidths - 1);
             for (const float weight : {1.0f, 0.5f, 0.0f}) {
                 recipes.push_back({static_cast<uint32_t>(std::sqrt(options_.most_samples * aspect)), order,
                                    std::vector<float>(shapes_.size(), weight)});
@@ -343,8 +316,7 @@ class Packer {
         std::vector<Candidate> best = evaluate(std::move(recipes), 1.6);
         std::stable_sort(best.begin(), best.end());
         if (best.size() > kBeam) best.resize(kBeam);
-        for (uint32_t round = 0; round < options_.effort && !best.empty(); ++round) {
-            if (progress) progress(Stage::kSample, static_cast<double>(round) / options_.effort);
+        for (uint32_t round = 0; round < std::min(options_.effort, kFirstRounds) && !best.empty(); ++round) {
             recipes.clear();
             for (size_t k = 0; k < kBatch; ++k)
                 recipes.push_back(vary(best[random(static_cast<uint32_t>(best.size()))].recipe));
@@ -375,34 +347,99 @@ class Packer {
         return recipe;
     }
 
-    // The candidates, in widths that follow the scale, with variations, until one fits the bound at this scale.
-    std::optional<Packing> fit_bound(const std::vector<Candidate>& best, double scale) {
-        for (int variation = 0; variation < 4; ++variation) {
-            std::vector<Recipe> recipes;
-            for (const Candidate& c : best) {
-                for (int k = 0; k < 3; ++k) {
-                    Recipe recipe = variation == 0 ? c.recipe : vary(c.recipe);
-                    recipe.width =
-                        static_cast<uint32_t>(std::lround(recipe.width * std::sqrt(options_.most_samples / c.area()))) +
-                        static_cast<uint32_t>(k) - 1;
-                    recipes.push_back(std::move(recipe));
-                }
-            }
-            const std::vector<Candidate> found = evaluate(recipes, 1.0);
-            if (found.empty()) continue;
-            const Candidate& c = *std::min_element(found.begin(), found.end());
-            return finish(scale, try_recipe(shapes_, c.recipe, c.height), c.recipe);
-        }
-        return std::nullopt;
+    PieceLayout layout_of(const Candidate& candidate) const {
+        Attempt attempt = try_recipe(shapes_, candidate.recipe, candidate.height);
+        return {candidate.recipe.width, attempt.height, std::move(attempt.spots)};
     }
 
-    Packing finish(double scale, const Attempt& attempt, const Recipe& recipe) const {
+    // Squeezes the best candidates side by side and returns the smallest.
+    PieceLayout squeeze_several(const std::vector<Candidate>& best, const SqueezeOptions& options) const {
+        constexpr size_t kChains = 4;
+        std::vector<PieceLayout> layouts(kChains);
+        parallel_blocks(kChains, 1, options_.threads, [&](size_t k, size_t, size_t) {
+            SqueezeOptions own = options;
+            own.seed = options.seed + k;
+            uint64_t moves = 0;
+            layouts[k] = squeeze(shapes_, layout_of(best[k % best.size()]), own, moves);
+        });
+        return *std::min_element(layouts.begin(), layouts.end(),
+                                 [](const PieceLayout& a, const PieceLayout& b) { return a.area() < b.area(); });
+    }
+
+    // The rectangle of that shape which makes the most of the bound.
+    PieceLayout largest_rectangle(const PieceLayout& layout) const {
+        const double ideal = layout.width * std::sqrt(options_.most_samples / static_cast<double>(layout.area()));
+        PieceLayout result;
+        const auto middle = static_cast<uint32_t>(ideal), slack = 1 + middle / 64;
+        for (uint32_t width = middle > slack ? middle - slack : 1; width <= middle + slack; ++width) {
+            const uint32_t height = options_.most_samples / width;
+            if (aspect_is_fine(width, height) && uint64_t{width} * height > result.area())
+                result.width = width, result.height = height;
+        }
+        return result;
+    }
+
+    // The layout of pieces at `old_scale`, taken over to those of shapes_ at `scale`: centres and angles stay.
+    PieceLayout rescaled(const std::vector<Shape>& old_shapes, const PieceLayout& layout, PieceLayout result) const {
+        const double across = static_cast<double>(result.width) / layout.width;
+        const double down = static_cast<double>(result.height) / layout.height;
+        for (size_t c = 0; c < shapes_.size(); ++c) {
+            const PieceSpot& spot = layout.spots[c];
+            const Piece& old = old_shapes[c][spot.orientation];
+            const auto turn = [&](const Piece& piece) {
+                if (piece.width > result.width || piece.height > result.height) return 10.0;
+                return 1 - std::cos(piece.chart.pose.angle - old.chart.pose.angle);
+            };
+            const auto nearest = std::min_element(shapes_[c].begin(), shapes_[c].end(),
+                                                  [&](const Piece& a, const Piece& b) { return turn(a) < turn(b); });
+            if (turn(*nearest) > 2) return {};  // none is small enough for the rectangle
+            const auto place = [](double centre, uint32_t extent, uint32_t side) {
+                return static_cast<uint32_t>(
+                    std::clamp(std::round(centre - 0.5 * extent), 0.0, static_cast<double>(side - extent)));
+            };
+            result.spots.push_back({static_cast<uint32_t>(nearest - shapes_[c].begin()),
+                                    place(across * (spot.column + 0.5 * old.width), nearest->width, result.width),
+                                    place(down * (spot.row + 0.5 * old.height), nearest->height, result.height)});
+        }
+        return result;
+    }
+
+    // The largest scale at which the layout still comes out without overlap.
+    Result<Packing> enlarge(const PieceLayout& layout, double scale, SqueezeOptions options) {
+        constexpr double kFirstStep = 0.004, kLastStep = 0.0005;
+        const std::vector<Shape> shapes = shapes_;
+        const PieceLayout rectangle = largest_rectangle(layout);
+        std::vector<double> angles;
+        for (size_t c = 0; c < shapes.size(); ++c)
+            angles.push_back(shapes[c][layout.spots[c].orientation].chart.pose.angle);
+        options.most_moves /= 4;
+        double best_scale = 0, step = kFirstStep;
+        double trial = scale * std::sqrt(static_cast<double>(rectangle.area()) / static_cast<double>(layout.area()));
+        std::optional<Packing> packed;
+        for (int round = 0; round < 60 && step >= kLastStep; ++round) {
+            if (!rasterize(trial, angles)) return report_broken();
+            PieceLayout next = rescaled(shapes, layout, rectangle);
+            uint64_t moves = 0;
+            if (!next.spots.empty()) next = separate(shapes_, std::move(next), options, moves);
+            if (!next.spots.empty()) {
+                packed = finish(trial, next);
+                best_scale = trial;
+            } else if (packed) {
+                step /= 2;
+            }
+            trial = packed ? best_scale * (1 + step) : trial * (1 - step);
+        }
+        if (!packed) return no_room();
+        return std::move(*packed);
+    }
+
+    Packing finish(double scale, const PieceLayout& layout) const {
         Packing packing;
         packing.scale = scale;
-        packing.width = recipe.width;
-        packing.height = attempt.height;
-        for (size_t c = 0; c < attempt.spots.size(); ++c) {
-            const Spot& spot = attempt.spots[c];
+        packing.width = layout.width;
+        packing.height = layout.height;
+        for (size_t c = 0; c < layout.spots.size(); ++c) {
+            const PieceSpot& spot = layout.spots[c];
             PlacedChart placed{shapes_[c][spot.orientation].chart, spot.column, spot.row};
             placed.chart.pose.offset += Vec2(spot.column, spot.row);
             packing.defined += placed.chart.defined;

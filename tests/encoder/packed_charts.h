@@ -18,7 +18,7 @@ struct PackedCharts {
 };
 
 // Charts that cannot be packed are split, as make_multi_chart_image() does.
-inline PackedCharts packed_charts(const Mesh& mesh, uint32_t charts, uint32_t samples) {
+inline PackedCharts packed_charts(const Mesh& mesh, uint32_t charts, uint32_t samples, uint64_t seed = 1) {
     const Topology topology = build_topology(mesh);
     AtlasOptions options;
     options.chartify.charts = charts;
@@ -31,7 +31,7 @@ inline PackedCharts packed_charts(const Mesh& mesh, uint32_t charts, uint32_t sa
             for (const uint32_t v : atlas.charts[c].loop) shapes[c].border.push_back(atlas.maps[c].uv[v]);
             shapes[c].least_border = static_cast<uint32_t>(std::max<size_t>(4, 2 * atlas.charts[c].paths.size()));
         }
-        result.packing = std::move(pack(shapes, {.most_samples = samples, .effort = 1}).value());
+        result.packing = std::move(pack(shapes, {.most_samples = samples, .effort = 1, .seed = seed}).value());
         if (result.packing.broken.empty()) break;
         auto split = split_charts(mesh, topology, {}, options, result.packing.broken, std::move(result.atlas));
         result.atlas = std::move(split.value());

@@ -18,9 +18,15 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 TEST(Zipper, BorderSamplesLieOnTheCutPathsAndOthersStay) {
     for (const NamedMesh& m : surfaces()) {
-        const PackedCharts s = packed_charts(m.mesh, 6, 8000);
+        // Now and then a packing's seams do not close; make_multi_chart_image() packs again then, and so do we.
+        constexpr uint64_t kMostPackings = 4;
+        PackedCharts s = packed_charts(m.mesh, 6, 8000);
+        auto zipped = zip(s.image, s.atlas.charts, s.atlas.maps, s.packing);
+        for (uint64_t seed = 2; !zipped.ok() && seed <= kMostPackings; ++seed) {
+            s = packed_charts(m.mesh, 6, 8000, seed);
+            zipped = zip(s.image, s.atlas.charts, s.atlas.maps, s.packing);
+        }
         ASSERT_TRUE(s.packing.broken.empty()) << m.name;
-        const auto zipped = zip(s.image, s.atlas.charts, s.atlas.maps, s.packing);
         ASSERT_TRUE(zipped.ok()) << m.name << ": " << zipped.error().message;
         const MultiChartImage& image = zipped.value();
         const auto point = glue_samples(image.mask, image.seams);
