@@ -175,7 +175,8 @@ Result<std::vector<ClosestPoint>> AttributeSource::locate(const GeometryImage& i
     std::vector<Query> queries(size_t{side} * side);
     parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            const auto p = surface.at(double(i / side) * scale, double(i % side) * scale);
+            const size_t row = i / side, column = i % side;
+            const auto p = surface.at(double(row) * scale, double(column) * scale);
             queries[i] = {p.position, p.outside, p.spacing};
         }
     });
@@ -201,8 +202,10 @@ Result<AttributeSource::Texels> AttributeSource::locate(const MultiChartImage& i
     for (const CellTriangle& face : faces) {
         const uint32_t row = face.cell / (width - 1), column = face.cell % (width - 1);
         std::array<Vec2, 3> corner;
-        for (size_t k = 0; k < 3; ++k)
-            corner[k] = Vec2(face.corners[k] % width - column, face.corners[k] / width - row);
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t i = face.corners[k] % width - column, j = face.corners[k] / width - row;
+            corner[k] = Vec2(i, j);
+        }
         const double area = twice_signed_area(corner[0], corner[1], corner[2]);
         for (uint32_t i = 0; i <= per_sample; ++i) {
             for (uint32_t j = 0; j <= per_sample; ++j) {
