@@ -51,8 +51,9 @@ struct Extent {
 
 // A chart that is too small for its cut-nodes at its scale, or no disk, may grow: there is room in its box, and its samples
 // beyond the border go on smoothly.
-std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const ChartPose& pose, size_t least_border) {
-    for (const double band : {0.5, 0.8, 1.1, 1.5}) {
+std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const ChartPose& pose, size_t least_border,
+                                     double least_band) {
+    for (const double band : {least_band, least_band + 0.3, least_band + 0.6, least_band + 1}) {
         ChartMask mask = rasterize_chart_on_lattice(border, pose, band);
         if (mask.is_disk && mask.border_length >= least_border) return mask;
     }
@@ -62,7 +63,7 @@ std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const Char
 // Rasterises a chart at the coarser levels and finds the box that holds them all. Levels are numbered from 1 up to the
 // last at which the chart is a disk with room for its cut-nodes.
 ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPose& pose, const Extent& finest,
-                          uint32_t most_levels) {
+                          uint32_t most_levels, double band) {
     ChartPyramid pyramid;
     pyramid.origin = {finest.first_column, finest.first_row};
     Extent extent;
@@ -74,7 +75,7 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
         ChartPose coarse = pose;
         coarse.scale *= shrink;
         coarse.offset = (pose.offset - Vec2(double(pyramid.origin.column), double(pyramid.origin.row))) * shrink;
-        std::optional<ChartMask> made = coarse_mask(border, coarse, std::max<size_t>(4, chart.paths.size()));
+        std::optional<ChartMask> made = coarse_mask(border, coarse, std::max<size_t>(4, chart.paths.size()), band);
         if (!made) break;
         ChartMask& mask = *made;
         const Vec2 corner = coarse.offset - mask.pose.offset;
@@ -177,8 +178,11 @@ bool same_topology(const TopologySummary& a, const TopologySummary& b) {
            a.genus == b.genus;
 }
 
-Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
-                                      const TopologySummary& wanted, uint32_t most_levels, uint32_t threads) {
+namespace {
+
+// With coarse samples that lie within `band` of a border taken in.
+Result<ChartImages> make_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
+                                const TopologySummary& wanted, uint32_t most_levels, double band, uint32_t threads) {
     GIM_TRY(paths, path_samples(image.mask, image.seams));
     const size_t count = atlas.charts.size();
     std::vector<Extent> extents(count);
@@ -192,8 +196,8 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
     for (;; --most_levels) {
         parallel_blocks(count, 1, threads, [&](size_t, size_t begin, size_t end) {
             for (size_t c = begin; c < end; ++c)
-                pyramids[c] =
-                    make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c], most_levels);
+                pyramids[c] = make_pyramid(atlas.charts[c], atlas.maps[c], packing.charts[c].chart.pose, extents[c],
+                                           most_levels, band);
         });
         uint64_t samples = 0;
         for (const ChartPyramid& p : pyramids) samples += uint64_t{p.columns} * p.rows;
@@ -242,6 +246,21 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
         }
     }
     return result;
+}
+
+}  // namespace
+
+Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
+                                      const TopologySummary& wanted, uint32_t most_levels, uint32_t threads) {
+    // A level whose samples happen to lie badly for its zippers often does well with a few more or fewer.
+    constexpr size_t kEnoughLevels = 4;
+    GIM_TRY(best, make_images(image, atlas, packing, wanted, most_levels, 0.5, threads));
+    for (const double band : {0.4, 0.6, 0.3, 0.7}) {
+        if (best.levels.size() >= std::min<size_t>(most_levels, kEnoughLevels)) break;
+        GIM_TRY(other, make_images(image, atlas, packing, wanted, most_levels, band, threads));
+        if (other.levels.size() > best.levels.size()) best = std::move(other);
+    }
+    return best;
 }
 
 }  // namespace gim

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 
+#include "encoder/closest_point.h"
+#include "encoder/refine.h"
 #include "encoder/stretch.h"
 
 namespace gim {
@@ -78,6 +81,71 @@ std::vector<uint32_t> find_slits(double spacing, Atlas& atlas) {
         }
     }
     return found;
+}
+
+namespace {
+
+// The face of a chart whose middle is nearest to a point.
+uint32_t nearest_face(const Chart& chart, const Vec3& point) {
+    uint32_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (uint32_t f = 0; f < chart.mesh.triangles.size(); ++f) {
+        const auto& [a, b, c] = chart.mesh.triangles[f];
+        const Vec3 middle = (chart.mesh.positions[a] + chart.mesh.positions[b] + chart.mesh.positions[c]) / 3;
+        if ((middle - point).squaredNorm() >= least) continue;
+        least = (middle - point).squaredNorm();
+        nearest = f;
+    }
+    return nearest;
+}
+
+// The chart of each sample.
+std::vector<uint32_t> owners_of(const MultiChartImage& image, const Packing& packing) {
+    std::vector<uint32_t> owner(image.mask.defined.size(), kNone);
+    for (uint32_t c = 0; c < packing.charts.size(); ++c) {
+        const PlacedChart& placed = packing.charts[c];
+        const SampleMask& mask = placed.chart.mask;
+        for (uint32_t i = 0; i < mask.defined.size(); ++i) {
+            if (mask.defined[i])
+                owner[size_t{placed.row + i / mask.width} * image.width() + placed.column + i % mask.width] = c;
+        }
+    }
+    return owner;
+}
+
+}  // namespace
+
+std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& packing, const Mesh& surface,
+                                   Atlas& atlas) {
+    constexpr double kLongEdge = 4, kOffSurface = 1;  // in spacings
+    const auto point = glue_samples(image.mask, image.seams);
+    if (!point.ok()) return {};
+    const std::vector<uint32_t> owner = owners_of(image, packing);
+    const double spacing = std::sqrt(surface_area(surface) / static_cast<double>(image.mask.count()));
+    const ClosestPointTree tree(surface);
+    std::vector<double> worst(atlas.charts.size(), 0.0);
+    std::vector<uint32_t> bridged;
+    for (const CellTriangle& triangle : triangles_of(image, point.value())) {
+        const Triangle& t = triangle.corners;
+        size_t longest = 0;
+        double length = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            const double here = (image.positions[t[k]] - image.positions[t[(k + 1) % 3]]).norm();
+            if (here > length) length = here, longest = k;
+        }
+        const uint32_t c = owner[t[0]];
+        if (length <= std::max(kLongEdge * spacing, worst[c])) continue;
+        const Vec3 &a = image.positions[t[longest]], &b = image.positions[t[(longest + 1) % 3]];
+        if (tree.find(0.5 * (a + b)).squared_distance <= kOffSurface * kOffSurface * spacing * spacing) continue;
+        const Chart& chart = atlas.charts[c];
+        const uint32_t first = nearest_face(chart, a), second = nearest_face(chart, b);
+        if (first == second) continue;
+        if (worst[c] == 0) bridged.push_back(c);
+        worst[c] = length;
+        atlas.maps[c].crossing = {first, second};
+    }
+    std::sort(bridged.begin(), bridged.end());
+    return bridged;
 }
 
 }  // namespace gim

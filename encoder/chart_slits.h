@@ -6,11 +6,18 @@
 #include <vector>
 
 #include "encoder/atlas.h"
+#include "encoder/multi_chart_image.h"
+#include "encoder/pack.h"
 
 namespace gim {
 
 // `spacing`: of the samples in the maps. Marks every chart with a slit by a face on each side of the worst place
 // (ChartMap::crossing), for split_charts() to part them there. Out: the charts, ascending. O(sum of squared borders).
 std::vector<uint32_t> find_slits(double spacing, Atlas& atlas);
+
+// What slipped through: charts with triangles of the image that span a gap, their middle off the surface by more than a
+// sample's spacing. Marked in the same way. `surface`: that of the charts. O(triangles), and a search for each long one.
+std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& packing, const Mesh& surface,
+                                   Atlas& atlas);
 
 }  // namespace gim

@@ -36,7 +36,12 @@ Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, 
         std::snprintf(caption, sizeof caption, "%zu charts, %.0f%% packed", multi_chart.atlas.charts.size(),
                       100 * multi_chart.packing_efficiency);
         observer(make_snapshot("charts", caption, multi_chart.atlas, multi_chart.packing));
-        observer(make_snapshot("image-fitted", "fitted and zipped", multi_chart.image));
+        if (!multi_chart.sampled.empty()) {
+            MultiChartImage sampled = multi_chart.image;
+            sampled.positions = multi_chart.sampled;
+            observer(make_snapshot("image-sampled", "sampled and zipped", sampled));
+        }
+        observer(make_snapshot("image-fitted", "fitted", multi_chart.image));
     }
     clock.begin(Stage::kSample);
     return make_chart_images(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,

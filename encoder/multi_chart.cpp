@@ -89,7 +89,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
     pack_options.effort = options.pack_effort;
     pack_options.seed = options.seed;
     pack_options.threads = options.threads;
-    constexpr uint32_t kMostPackings = 12;
+    constexpr uint32_t kMostPackings = 10;
     MultiChart result;
     result.topology = wanted;
     for (;; ++result.packings) {
@@ -116,6 +116,15 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             ++pack_options.seed;
             continue;
         }
+        if (result.packings < kMostPackings) {
+            const std::vector<uint32_t> bridged = find_bridges(zipped.value(), packing, fine, atlas);
+            if (!bridged.empty()) {
+                GIM_TRY(split, split_charts(fine, topology, importance, atlas_options, bridged, std::move(atlas),
+                                            clock.progress()));
+                atlas = std::move(split);
+                continue;
+            }
+        }
         result.image = std::move(zipped.value());
         result.stretch_efficiency = even_efficiency * total_cost(atlas.maps) / total_cost(maps);
         atlas.maps = std::move(maps);
@@ -134,7 +143,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
         fit_options.threads = options.threads;
         GIM_TRY(gluing, glue_charts(result.image.mask, result.image.seams));
         GIM_TRY(fitted, fit(result.image.positions, gluing, mesh, fit_options, clock.progress()));
-        result.image.positions = std::move(fitted.positions);
+        result.sampled = std::exchange(result.image.positions, std::move(fitted.positions));
         result.before_fit = fitted.before;
         result.after_fit = fitted.after;
     }

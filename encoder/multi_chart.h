@@ -32,7 +32,8 @@ uint32_t automatic_charts(const Mesh& mesh, uint32_t samples);
 
 struct MultiChart {
     MultiChartImage image;
-    Atlas atlas;  // what the image was made from
+    std::vector<Vec3> sampled;  // its positions before the fit; empty without one
+    Atlas atlas;                // what the image was made from
     Packing packing;
     TopologySummary topology;                               // of the mesh
     double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1, the former of even samples
