@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "encoder/multi_chart.h"
+#include "tests/encoder/stage_meshes.h"
+
 namespace gim {
 namespace {
 
@@ -62,6 +65,39 @@ TEST(ChartSlits, GapsWiderThanASampleAreNone) {
     EXPECT_TRUE(find_slits(0.05, atlas).empty());
     Atlas fine = sector(0.3, 1.5);
     EXPECT_TRUE(find_slits(0.01, fine).empty());
+}
+
+TEST(ChartSlits, TrianglesThatSpanAGapAreFoundWithTheirChart) {
+    const Mesh mesh = surfaces()[0].mesh;
+    StageClock clock({});
+    MultiChartOptions options;
+    options.charts = 6;
+    options.samples = 5000;
+    options.pack_effort = 1;
+    options.fit = std::nullopt;
+    auto made = make_multi_chart_image(mesh, options, clock);
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    MultiChart& charts = made.value();
+    EXPECT_TRUE(find_bridges(charts.image, charts.packing, mesh, charts.atlas).empty());
+
+    // A sample in the middle of a chart is taken from far away.
+    const PlacedChart& placed = charts.packing.charts[2];
+    const SampleMask& mask = placed.chart.mask;
+    uint32_t inner = kNone;
+    for (uint32_t i = 0; i < mask.defined.size() && inner == kNone; ++i) {
+        const int64_t column = i % mask.width, row = i / mask.width;
+        bool all = true;
+        for (int64_t y = row - 2; y <= row + 2; ++y) {
+            for (int64_t x = column - 2; x <= column + 2; ++x) all &= mask.at(x, y);
+        }
+        if (all) inner = (placed.row + i / mask.width) * charts.image.width() + placed.column + i % mask.width;
+    }
+    ASSERT_NE(inner, kNone);
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : mesh.positions) middle += p / static_cast<double>(mesh.positions.size());
+    charts.image.positions[inner] = middle + 3 * (charts.image.positions[inner] - middle);
+    EXPECT_EQ(find_bridges(charts.image, charts.packing, mesh, charts.atlas), std::vector<uint32_t>{2});
+    EXPECT_TRUE(charts.atlas.maps[2].crossing.has_value());
 }
 
 }  // namespace
