@@ -377,6 +377,10 @@ ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const Char
     chart.mask.defined.assign(size_t{chart.mask.width} * chart.mask.height, 0);
     fill_interior(polygon, chart.mask);
     fill_band(polygon, band, chart.mask);
+    if (chart.mask.count() == 0) {  // it lies between the samples
+        chart.mask = {};
+        return chart;
+    }
     dilate_to_manifold(chart.mask);
     for (bool again = true; again;) {
         fill_small_holes(chart.mask);

@@ -26,6 +26,7 @@ constexpr double kLongestEdge = 0.045;
 constexpr double kUsualPacking = 0.8;
 
 constexpr int kMostSlitRounds = 4;
+constexpr uint32_t kMostBridgeRounds = 2;  // each packs again
 
 std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
@@ -116,7 +117,7 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
             ++pack_options.seed;
             continue;
         }
-        if (result.packings < kMostPackings) {
+        if (result.packings <= kMostBridgeRounds) {
             const std::vector<uint32_t> bridged = find_bridges(zipped.value(), packing, fine, atlas);
             if (!bridged.empty()) {
                 GIM_TRY(split, split_charts(fine, topology, importance, atlas_options, bridged, std::move(atlas),

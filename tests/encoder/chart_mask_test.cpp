@@ -136,5 +136,12 @@ TEST(ChartMask, BordersRunRoundTheTriangles) {
     EXPECT_EQ(trace_borders(drawn({"####", "#..#", "#..#", "####"})).size(), 4u);  // the four corners
 }
 
+TEST(ChartMask, ChartsBetweenTheSamplesHaveNone) {
+    const std::vector<Vec2> border{{0.45, 0.45}, {0.55, 0.45}, {0.5, 0.55}};
+    const ChartMask chart = rasterize_chart_on_lattice(border, {}, 0.3);
+    EXPECT_FALSE(chart.is_disk);
+    EXPECT_EQ(chart.defined, 0u);
+}
+
 }  // namespace
 }  // namespace gim
