@@ -8,16 +8,6 @@
 namespace gim {
 namespace {
 
-Status read_table(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload) {
-    ChunkWalk walk(header);
-    Chunk chunk;
-    uint64_t offset = 0;
-    while (walk.next(&chunk, &offset)) {
-        if (chunk.type == ChunkType::kSeams) return read_payload(file, chunk, offset, payload);
-    }
-    return Status::kMalformed;
-}
-
 // Where charts lie in a level's grid. At full resolution in the rectangle; coarser ones, which would run into each other
 // there, in shelves, an empty row and column between them.
 class GridLayout {
@@ -321,7 +311,7 @@ uint32_t chart_diffusion_width(uint32_t columns, uint32_t rows) {
 Status open_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
                    ChartLevelShape* shape) {
     std::span<const uint8_t> payload;
-    if (Status s = read_table(header, file, &payload); s != Status::kOk) return s;
+    if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
     if (level >= header.level_count) return Status::kNoSuchLevel;
     *shape = {};
     shape->level = level;
@@ -379,7 +369,7 @@ ChartWorkspace lay_out_charts(const ChartLevelShape& shape, Arena* arena) {
 Status decode_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
                      const ChartLevelShape& shape, const ChartWorkspace& ws, const float** samples) {
     std::span<const uint8_t> payload;
-    if (Status s = read_table(header, file, &payload); s != Status::kOk) return s;
+    if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
     uint64_t padded = 0;
     ChartTableReader reader;
     const Status status = for_each_chart(payload, header, limits, shape.level, ws.mates, &reader,

@@ -107,15 +107,24 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
     return Status::kOk;
 }
 
-Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams) {
+bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset) {
     ChunkWalk walk(header);
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == type) return true;
+    }
+    return false;
+}
+
+Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload) {
     Chunk chunk;
     uint64_t offset = 0;
-    while (walk.next(&chunk, &offset)) {
-        if (chunk.type == ChunkType::kSeams) break;
-    }
+    if (!find_chunk(header, ChunkType::kSeams, &chunk, &offset)) return Status::kMalformed;
+    return read_payload(file, chunk, offset, payload);
+}
+
+Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams) {
     std::span<const uint8_t> payload;
-    if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
+    if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
     for (uint32_t i = 0;; ++i) {
         std::array<CutPath, kMaxCutPaths> paths;
         ParsedSideband parsed;

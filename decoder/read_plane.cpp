@@ -37,14 +37,6 @@ uint64_t plane_scratch_size(const PlaneLevel& plane) {
     return arena.used();
 }
 
-bool find_plane(const Header& header, uint32_t kind, Chunk* chunk, uint64_t* offset) {
-    ChunkWalk walk(header);
-    while (walk.next(chunk, offset)) {
-        if (chunk->type == plane_type(kind)) return true;
-    }
-    return false;
-}
-
 Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind, uint32_t level,
                   PlaneLevel* out) {
     const std::span<const uint8_t> file = {static_cast<const uint8_t*>(bytes), size};
@@ -53,7 +45,7 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     if (image >= header.image_count() || kind >= kPlaneKinds) return Status::kBadArgument;
     Chunk chunk;
     uint64_t offset = 0;
-    if (!find_plane(header, kind, &chunk, &offset)) return Status::kNoSuchPlane;
+    if (!find_chunk(header, plane_type(kind), &chunk, &offset)) return Status::kNoSuchPlane;
     out->has_ring = header.layout == FileLayout::kSquares;
     if (out->has_ring) {
         if (Status s = read_seams(header, file, image, &out->seams); s != Status::kOk) return s;

@@ -31,12 +31,6 @@ struct ChartPyramid {
     std::vector<Lattice> corners;    // of masks in their level's lattice, before the origin is moved
 };
 
-std::vector<Vec2> border_of(const Chart& chart, const ChartMap& map) {
-    std::vector<Vec2> border;
-    for (const uint32_t v : chart.loop) border.push_back(map.uv[v]);
-    return border;
-}
-
 // The rectangle that the samples of a loop lie in.
 struct Extent {
     int64_t first_column = INT64_MAX, last_column = INT64_MIN, first_row = INT64_MAX, last_row = INT64_MIN;
@@ -69,7 +63,7 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
     Extent extent;
     extent.add(0, 0);
     extent.add(finest.last_column - finest.first_column, finest.last_row - finest.first_row);
-    const std::vector<Vec2> border = border_of(chart, map);
+    const std::vector<Vec2> border = border_of(chart, map.uv);
     for (uint32_t level = 1; level < most_levels; ++level) {
         const double shrink = std::exp2(-static_cast<double>(level));
         ChartPose coarse = pose;
@@ -254,7 +248,7 @@ Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas&
                                       const TopologySummary& wanted, uint32_t most_levels, uint32_t threads) {
     // A level whose samples happen to lie badly for its zippers often does well with a few more or fewer.
     constexpr size_t kEnoughLevels = 4;
-    GIM_TRY(best, make_images(image, atlas, packing, wanted, most_levels, 0.5, threads));
+    GIM_TRY(best, make_images(image, atlas, packing, wanted, most_levels, kBand, threads));
     for (const double band : {0.4, 0.6, 0.3, 0.7}) {
         if (best.levels.size() >= std::min<size_t>(most_levels, kEnoughLevels)) break;
         GIM_TRY(other, make_images(image, atlas, packing, wanted, most_levels, band, threads));

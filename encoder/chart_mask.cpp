@@ -10,7 +10,6 @@ namespace gim {
 
 namespace {
 
-constexpr double kBand = 0.5;
 // Holes of at most this many samples are filled: they are inlets narrower than a sample.
 constexpr size_t kLargestFilledHole = 4;
 
@@ -356,7 +355,7 @@ ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double 
     Vec2 low = pose(border[0]);
     for (const Vec2& p : border) low = low.cwiseMin(pose(p));
     pose.offset = -low;
-    return rasterize_chart_on_lattice(border, pose, kBand);
+    return rasterize_chart_on_lattice(border, pose);
 }
 
 ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band) {

@@ -47,11 +47,14 @@ struct ChartMask {
     bool is_disk = false;
 };
 
+// How near to its border samples outside belong to a chart, unless told otherwise.
+inline constexpr double kBand = 0.5;
+
 // In: the border of a chart's map, counter-clockwise, not touching itself. O(area + border in samples).
 ChartMask rasterize_chart(const std::vector<Vec2>& border, double scale, double angle);
 // The same with samples where the pose has whole coordinates: the result's offset differs from the pose's by whole numbers.
-// band: how near to the border samples outside belong to the chart, 0.5 in the function above.
-ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band = 0.5);
+// band: how near to the border samples outside belong to the chart.
+ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const ChartPose& pose, double band = kBand);
 // After samples were taken away: cuts the rectangle down to the others, moves the pose along and counts anew.
 void trim(ChartMask& chart);
 

@@ -483,6 +483,13 @@ void measure_map(const Mesh& mesh, const std::vector<Element>& elements, ChartMa
 
 }  // namespace
 
+std::vector<Vec2> border_of(const Chart& chart, const std::vector<Vec2>& uv) {
+    std::vector<Vec2> border;
+    border.reserve(chart.loop.size());
+    for (const uint32_t v : chart.loop) border.push_back(uv[v]);
+    return border;
+}
+
 void measure_map(const Chart& chart, const std::vector<double>& importance, ChartMap& map) {
     measure_map(chart.mesh, elements_of(chart.mesh, importance), map);
 }
@@ -506,12 +513,7 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
     for (const Element& e : elements) total_area += e.area;
     ChartMap map;
     for (uint32_t f = 0; f < mesh.triangles.size(); ++f) map.surface += face_area(mesh, f);
-    const auto border_crossing = [&] {
-        std::vector<Vec2> border;
-        border.reserve(chart.loop.size());
-        for (const uint32_t v : chart.loop) border.push_back(map.uv[v]);
-        return find_crossing(border);
-    };
+    const auto border_crossing = [&] { return find_crossing(border_of(chart, map.uv)); };
     const auto measure = [&] { measure_map(mesh, elements, map); };
     const auto start_from_circle = [&] { return tutte(chart, total_area, map.uv); };
     const Error unsolvable{Stage::kParametrize, "a chart of " + std::to_string(mesh.triangles.size()) +

@@ -89,6 +89,9 @@ Result<std::vector<ChartMap>> parametrize_charts(const std::vector<Chart>& chart
 // between charts is the packing's affair).
 double stretch_efficiency(const std::vector<Chart>& charts, const std::vector<ChartMap>& maps);
 
+// A chart's border in its map, from its first cut-node on.
+std::vector<Vec2> border_of(const Chart& chart, const std::vector<Vec2>& uv);
+
 // Two edges (numbers of their first corners) in which a closed polygon touches or crosses itself, if it does. O(n) for
 // polygons with edges of similar length.
 std::optional<std::array<uint32_t, 2>> find_crossing(const std::vector<Vec2>& polygon);

@@ -99,20 +99,6 @@ uint32_t nearest_face(const Chart& chart, const Vec3& point) {
     return nearest;
 }
 
-// The chart of each sample.
-std::vector<uint32_t> owners_of(const MultiChartImage& image, const Packing& packing) {
-    std::vector<uint32_t> owner(image.mask.defined.size(), kNone);
-    for (uint32_t c = 0; c < packing.charts.size(); ++c) {
-        const PlacedChart& placed = packing.charts[c];
-        const SampleMask& mask = placed.chart.mask;
-        for (uint32_t i = 0; i < mask.defined.size(); ++i) {
-            if (mask.defined[i])
-                owner[size_t{placed.row + i / mask.width} * image.width() + placed.column + i % mask.width] = c;
-        }
-    }
-    return owner;
-}
-
 }  // namespace
 
 std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& packing, const Mesh& surface,
@@ -120,7 +106,7 @@ std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& 
     constexpr double kLongEdge = 4, kOffSurface = 1;  // in spacings
     const auto point = glue_samples(image.mask, image.seams);
     if (!point.ok()) return {};
-    const std::vector<uint32_t> owner = owners_of(image, packing);
+    const std::vector<uint32_t> owner = owners_of(packing);
     const double spacing = std::sqrt(surface_area(surface) / static_cast<double>(image.mask.count()));
     const ClosestPointTree tree(surface);
     std::vector<double> worst(atlas.charts.size(), 0.0);

@@ -1,7 +1,6 @@
 #include "encoder/choose_layout.h"
 
 #include "encoder/multi_chart.h"
-#include "encoder/refine.h"
 #include "encoder/square_images.h"
 
 namespace gim {
@@ -18,7 +17,7 @@ double efficiency_of_squares(const Mesh& mesh, EncodeOptions options, StageClock
 
 double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
     MultiChartOptions quick;
-    if (options.charts > 0) quick.charts = options.charts;
+    quick.charts = options.charts;
     quick.samples = options.samples;
     quick.seed = options.seed;
     quick.threads = options.threads;

@@ -14,6 +14,12 @@ namespace gim {
 // dead zone. quantizer: units.
 Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer);
 
+// Positions' base is stored relative to the middle of their range.
+template <class Sample>
+void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
+    for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
+}
+
 // What BandCoder works in; columns: of the widest image.
 class BandScratch {
   public:

@@ -73,8 +73,7 @@ Mesh sample_side_by_side(const Atlas& atlas, double scale) {
     Packing row;
     row.scale = scale;
     for (size_t c = 0; c < atlas.charts.size(); ++c) {
-        std::vector<Vec2> border;
-        for (const uint32_t v : atlas.charts[c].loop) border.push_back(atlas.maps[c].uv[v]);
+        const std::vector<Vec2> border = border_of(atlas.charts[c], atlas.maps[c].uv);
         PlacedChart placed{rasterize_chart(border, scale, 0), row.width, 0};
         placed.chart.pose.offset += Vec2(row.width, 0);
         row.width += placed.chart.mask.width + 1;

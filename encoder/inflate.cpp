@@ -257,13 +257,6 @@ class Wall : public BorderForce {
     std::vector<Point> points_;
 };
 
-std::vector<Vec2> border_of(const Chart& chart, const std::vector<Vec2>& uv) {
-    std::vector<Vec2> border;
-    border.reserve(chart.loop.size());
-    for (const uint32_t v : chart.loop) border.push_back(uv[v]);
-    return border;
-}
-
 bool upright(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
                        [&](const Triangle& t) { return twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0; });

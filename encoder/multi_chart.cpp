@@ -32,7 +32,7 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
     for (size_t c = 0; c < atlas.charts.size(); ++c) {
         PackShape shape;
-        for (const uint32_t v : atlas.charts[c].loop) shape.border.push_back(atlas.maps[c].uv[v]);
+        shape.border = border_of(atlas.charts[c], atlas.maps[c].uv);
         // Room for a sample between any two cut-nodes.
         shape.least_border = std::max<uint32_t>(4, static_cast<uint32_t>(2 * atlas.charts[c].paths.size()));
         shapes.push_back(std::move(shape));

@@ -457,6 +457,19 @@ class Packer {
 
 }  // namespace
 
+std::vector<uint32_t> owners_of(const Packing& packing) {
+    std::vector<uint32_t> owner(size_t{packing.width} * packing.height, kNone);
+    for (uint32_t c = 0; c < packing.charts.size(); ++c) {
+        const PlacedChart& placed = packing.charts[c];
+        const SampleMask& mask = placed.chart.mask;
+        for (uint32_t i = 0; i < mask.defined.size(); ++i) {
+            if (mask.defined[i])
+                owner[size_t{placed.row + i / mask.width} * packing.width + placed.column + i % mask.width] = c;
+        }
+    }
+    return owner;
+}
+
 Result<Packing> pack(const std::vector<PackShape>& shapes, const PackOptions& options, const Progress& progress) {
     if (shapes.empty()) return Error{Stage::kSample, "there are no charts to pack"};
     return Packer(shapes, options).run(progress);

@@ -48,6 +48,9 @@ struct Packing {
     double efficiency() const { return static_cast<double>(defined) / (static_cast<double>(width) * height); }
 };
 
+// Per sample of the rectangle, row-major: the chart that defines it, or kNone. O(samples).
+std::vector<uint32_t> owners_of(const Packing& packing);
+
 // Every placed mask is a disk with at least `least_border` border samples. A chart for which no orientation gives one is
 // enlarged on its own; when its masks are still no disks at 1.8 times its size it is reported in `broken`: it has an
 // inlet narrower than a sample. So is one that is much longer than the side of a square of the samples. Fails when the

@@ -46,11 +46,7 @@ std::vector<Vec3> defined_positions(const ChartImages& images) {
     return positions;
 }
 
-// Base values relative to the middle of the range, all but the first relative to the one before.
-template <class Sample>
-void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
-    for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
-}
+// Base values relative to the one before.
 void chain_base(Pyramid<int32_t>* pyramid) {
     for (size_t i = pyramid->base.size(); i-- > 3;) pyramid->base[i] -= pyramid->base[i - 3];
 }

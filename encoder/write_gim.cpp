@@ -47,12 +47,6 @@ std::string complaint(std::span<const GeometryImage> images, const CodingParamet
     return {};
 }
 
-// The base is stored relative to the middle of the range.
-template <class Sample>
-void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
-    for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
-}
-
 }  // namespace
 
 Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const CodingParameters& parameters) {

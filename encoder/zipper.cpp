@@ -209,7 +209,7 @@ class Zipper {
         : image_(std::move(image)), charts_(charts), maps_(maps), packing_(packing) {}
 
     Result<MultiChartImage> run() {
-        owner_ = owners();
+        owner_ = owners_of(packing_);
         constexpr int kMostRounds = 10;
         for (int round = 0;; ++round) {
             if (auto error = find_loops()) return *error;
@@ -234,20 +234,6 @@ class Zipper {
         for (uint32_t c = 0; c < charts_.size(); ++c) {
             for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) close(c, p);
         }
-    }
-
-    // The chart that each sample belongs to.
-    std::vector<uint32_t> owners() const {
-        std::vector<uint32_t> owner(image_.mask.defined.size(), kNone);
-        for (uint32_t c = 0; c < charts_.size(); ++c) {
-            const PlacedChart& placed = packing_.charts[c];
-            const SampleMask& mask = placed.chart.mask;
-            for (uint32_t i = 0; i < mask.defined.size(); ++i) {
-                if (!mask.defined[i]) continue;
-                owner[(placed.row + i / mask.width) * image_.width() + placed.column + i % mask.width] = c;
-            }
-        }
-        return owner;
     }
 
     // Tells which border belongs to which chart.
