@@ -141,6 +141,7 @@ Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const Tria
     const ReferenceSurface surface(std::move(reference), options.threads);
     CompareOptions compare_options;
     compare_options.threads = options.threads;
+    compare_options.normals = true;
 
     CodingParameters parameters;
     const PlaneMaker plane_maker(surface.mesh(), input, options);

@@ -213,6 +213,9 @@ void add_compare(CLI::App& app, CompareCommand& c) {
         "Either file may be a mesh or a .gim file. PSNR = 20 log10(diagonal / d): diagonal of the reference's "
         "bounding\n"
         "box, d the larger of the two one-way area-weighted RMS distances from points to the other surface.\n"
+        "Normals: the mean angle between the shading normals of area-uniform samples and of the nearest points of the\n"
+        "other surface. Shading normals are interpolated between vertex normals, those the area-weighted means of the\n"
+        "triangles around all vertices at one position; normals in the files do not count.\n"
         "Vertices at equal positions are joined in formats that cannot share them (STL, glTF), not in others.\n"
         "In JSON, a PSNR of null means that the surfaces are equal.");
     sub->add_option("REFERENCE", c.reference, "What it should be")->required();

@@ -1,4 +1,4 @@
-// gim compare: distances between two surfaces and what holds of their connectivity.
+// gim compare: distances between two surfaces, the angle between their normals, and what holds of their connectivity.
 #include <cstdio>
 
 #include "tools/commands.h"
@@ -30,7 +30,9 @@ int run_compare(const CompareCommand& command) {
     if (!reference.ok()) return report_error(command.reference, reference.error());
     const Result<TriangleMesh> test = read_surface(command.test, command.level);
     if (!test.ok()) return report_error(command.test, test.error());
-    const Result<Comparison> compared = compare(reference.value(), test.value(), command.options);
+    CompareOptions options = command.options;
+    options.normals = true;
+    const Result<Comparison> compared = compare(reference.value(), test.value(), options);
     if (!compared.ok()) return report_error(command.reference + " and " + command.test, compared.error());
 
     const Comparison& c = compared.value();
@@ -54,6 +56,10 @@ int run_compare(const CompareCommand& command) {
     std::printf("max test to reference      %.6g\n", c.max_to_reference);
     std::printf("Hausdorff distance         %.6g\n", c.hausdorff);
     std::printf("PSNR                       %.3f dB\n", c.psnr);
+    if (c.normals) {
+        std::printf("normals, mean angle        %.3f degrees (%.3f reference to test, %.3f test to reference)\n",
+                    c.normals->mean, c.normals->to_test, c.normals->to_reference);
+    }
     return 0;
 }
 

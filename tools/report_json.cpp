@@ -21,14 +21,19 @@ ordered_json to_json(const TopologySummary& topology) {
 }
 
 ordered_json to_json(const Comparison& comparison) {
-    return {{"diagonal", comparison.diagonal},
-            {"rms_to_test", comparison.rms_to_test},
-            {"rms_to_reference", comparison.rms_to_reference},
-            {"rms", comparison.rms},
-            {"max_to_test", comparison.max_to_test},
-            {"max_to_reference", comparison.max_to_reference},
-            {"hausdorff", comparison.hausdorff},
-            {"psnr", comparison.psnr}};
+    ordered_json json = {{"diagonal", comparison.diagonal},
+                         {"rms_to_test", comparison.rms_to_test},
+                         {"rms_to_reference", comparison.rms_to_reference},
+                         {"rms", comparison.rms},
+                         {"max_to_test", comparison.max_to_test},
+                         {"max_to_reference", comparison.max_to_reference},
+                         {"hausdorff", comparison.hausdorff},
+                         {"psnr", comparison.psnr}};
+    if (const auto& normals = comparison.normals) {
+        json["normal_error"] = {
+            {"to_test", normals->to_test}, {"to_reference", normals->to_reference}, {"mean", normals->mean}};
+    }
+    return json;
 }
 
 ordered_json to_json(const EncodeReport& report) {

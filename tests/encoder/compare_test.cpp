@@ -69,6 +69,7 @@ TEST(Compare, ThreadsAndRepetitionChangeNothing) {
     const TriangleMesh a = corpus::limbed_blob(24), b = corpus::roughened(a, 0.01, 1);
     CompareOptions options;
     options.samples = 40000;
+    options.normals = true;
     options.threads = 1;
     const auto one = compare(a, b, options);
     options.threads = 2;
@@ -77,6 +78,78 @@ TEST(Compare, ThreadsAndRepetitionChangeNothing) {
     EXPECT_EQ(one.value().rms_to_test, two.value().rms_to_test);
     EXPECT_EQ(one.value().rms_to_reference, two.value().rms_to_reference);
     EXPECT_EQ(one.value().hausdorff, two.value().hausdorff);
+    EXPECT_EQ(one.value().normals->to_test, two.value().normals->to_test);
+    EXPECT_EQ(one.value().normals->to_reference, two.value().normals->to_reference);
+}
+
+CompareOptions with_normals() {
+    CompareOptions options;
+    options.samples = 50000;
+    options.normals = true;
+    return options;
+}
+
+NormalError normal_error(const TriangleMesh& reference, const TriangleMesh& test) {
+    const auto result = compare(reference, test, with_normals());
+    if (!result.ok() || !result.value().normals) return {.to_test = -1, .to_reference = -1, .mean = -1};
+    return *result.value().normals;
+}
+
+TEST(Compare, NormalsAreMeasuredOnlyWhereAskedFor) {
+    const TriangleMesh mesh = corpus::sphere(6);
+    const auto plain = compare(mesh, mesh, {}), asked = compare(mesh, mesh, with_normals());
+    ASSERT_TRUE(plain.ok() && asked.ok());
+    EXPECT_FALSE(plain.value().normals.has_value());
+    EXPECT_TRUE(asked.value().normals.has_value());
+}
+
+TEST(Compare, NormalsOfEqualSurfacesAgreeHoweverTheirVerticesAreShared) {
+    const TriangleMesh mesh = corpus::limbed_blob(20);
+    for (const TriangleMesh& other : {mesh, corpus::soup(mesh)}) {
+        const NormalError error = normal_error(mesh, other);
+        EXPECT_GE(error.mean, 0);
+        EXPECT_LT(error.to_test, 1e-4);
+        EXPECT_LT(error.to_reference, 1e-4);
+    }
+}
+
+TEST(Compare, NormalsOfATurnedSurfaceAreOpposite) {
+    const TriangleMesh mesh = corpus::sphere(12);
+    TriangleMesh turned = mesh;
+    for (auto& t : turned.triangles) std::swap(t[0], t[1]);
+    const NormalError error = normal_error(mesh, turned);
+    EXPECT_NEAR(error.to_test, 180, 1e-4);
+    EXPECT_NEAR(error.to_reference, 180, 1e-4);
+}
+
+TEST(Compare, NormalsOfTwoPlanesDifferByTheirAngle) {
+    TriangleMesh tilted = square(4);
+    for (auto& p : tilted.positions) p[2] = p[0] / 10;
+    const NormalError error = normal_error(square(7), tilted);
+    const double angle = std::atan(0.1) * 180 / 3.14159265358979323846;
+    EXPECT_NEAR(error.to_test, angle, 1e-6);
+    EXPECT_NEAR(error.to_reference, angle, 1e-6);
+    EXPECT_NEAR(error.mean, angle, 1e-6);
+}
+
+TEST(Compare, NormalsOfOneWayAreTheMeanOverItsOwnArea) {
+    // A roof over the left half of the ground, 45 degrees steep, and flat ground on the right: the angle is 45 degrees on
+    // sqrt(2) of 1 + sqrt(2) of its area. Nothing is shared at the ridge, so its normals do not blend.
+    const TriangleMesh roof{{{-1, 0, 0}, {0, 0, 1}, {0, 2, 1}, {-1, 2, 0}, {0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}},
+                            {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+    const TriangleMesh ground{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const auto result = compare(ground, roof, with_normals());
+    ASSERT_TRUE(result.ok());
+    EXPECT_NEAR(result.value().normals->to_reference, 45 * std::sqrt(2.0) / (1 + std::sqrt(2.0)), 0.01);
+}
+
+TEST(Compare, NormalsOfARefinedSphereAreNear) {
+    const double coarse = normal_error(corpus::sphere(40), corpus::sphere(8)).mean;
+    const double fine = normal_error(corpus::sphere(40), corpus::sphere(20)).mean;
+    EXPECT_LT(coarse, 2);
+    EXPECT_LT(fine, 0.5);
+    EXPECT_LT(fine, coarse);
+    EXPECT_GT(fine, 0);
 }
 
 TEST(Compare, UnusableMeshesAreRefusedByName) {

@@ -145,6 +145,7 @@ TEST_F(Cli, EveryOutputFormatIsTheSameWatertightSurfaceAtEveryLevel) {
             if (level["level"] == 0) {
                 EXPECT_LT(result["comparison"]["hausdorff"].get<double>(),
                           1e-6 * result["comparison"]["diagonal"].get<double>());
+                EXPECT_LT(result["comparison"]["normal_error"]["mean"].get<double>(), 0.01) << extension;
             }
         }
     }
@@ -167,7 +168,8 @@ TEST_F(Cli, CompareReadsMeshesAndGimFilesOnBothSides) {
     for (const auto& [reference, test] : {std::pair{mesh_path(), gim_path()}, std::pair{gim_path(), mesh_path()}}) {
         const Outcome compare = gim({"compare", reference, test, "--samples", "5000"});
         EXPECT_EQ(compare.status, 0) << compare.err;
-        for (const char* word : {"RMS reference to test", "RMS test to reference", "Hausdorff", "PSNR", "watertight"}) {
+        for (const char* word :
+             {"RMS reference to test", "RMS test to reference", "Hausdorff", "PSNR", "normals", "watertight"}) {
             EXPECT_NE(compare.out.find(word), std::string::npos) << word;
         }
     }
