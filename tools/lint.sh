@@ -24,7 +24,7 @@ say "clang-tidy"
 if [ $# -gt 0 ]; then
     files=("$@")
 else
-    mapfile -t files < <(git ls-files '*.cpp' | grep -v '^tests/fuzz/')
+    mapfile -t files < <(git ls-files '*.cpp' | grep -vE '^(tests/fuzz|tools/rd)/')
 fi
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p build/release --quiet 2>/dev/null ||
     die "clang-tidy complains"

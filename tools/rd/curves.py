@@ -1,0 +1,160 @@
+"""Curves through measured points: fronts, interpolation, and the tables made of them."""
+
+import csv
+import math
+from pathlib import Path
+
+TARGETS_DB = (60, 65, 70, 75)
+NORMAL_BYTES = (4000, 8000)
+REACH_DB = 0.5  # a curve counts this far beyond its ends: an encoder that aims at 60 dB may land at 60.2
+
+# key: (label, colour, whether it is gim's own). Colours of Okabe and Ito: told apart by everybody.
+TOOLS = {
+    "gim": ("gim, one square", "#000000", True),
+    "mcgim": ("gim, charts", "#D55E00", True),
+    "draco": ("Draco, full mesh", "#999999", False),
+    "meshopt": ("meshoptimizer + zstd, full mesh", "#F0E442", False),
+    "quadric+draco": ("meshopt_simplify + Draco", "#56B4E9", False),
+    "quadric+meshopt": ("meshopt_simplify + meshoptimizer + zstd", "#CC79A7", False),
+    "lt+draco": ("Lindstrom-Turk + Draco", "#0072B2", False),
+    "lt+meshopt": ("Lindstrom-Turk + meshoptimizer + zstd", "#009E73", False),
+    "rivals.csv": ("best rival, recorded", "#E69F00", False),
+}
+
+
+def label(tool):
+    return TOOLS[tool][0]
+
+
+def is_own(tool):
+    return TOOLS[tool][2]
+
+
+def front(points, better=1):
+    """Of (bytes, value) the ones that no smaller file beats; `better` is 1 where more is better, -1 where less is."""
+    kept = []
+    for size, value in sorted(points, key=lambda p: (p[0], -better * p[1])):
+        if not kept or better * value > better * kept[-1][1]:
+            kept.append((size, value))
+    return kept
+
+
+def bytes_at(points, psnr):
+    """Bytes that reach `psnr`, linear in their logarithm between neighbours on the front. None where it is not reached."""
+    curve = front(points)
+    for (size, value) in curve:
+        if abs(value - psnr) < 1e-9:
+            return size
+    if len(curve) < 2 or psnr < curve[0][1] - REACH_DB or psnr > curve[-1][1] + REACH_DB:
+        return None
+    upper = next((i for i, (_, value) in enumerate(curve) if value > psnr), len(curve) - 1)
+    (low_size, low), (high_size, high) = curve[max(upper, 1) - 1], curve[max(upper, 1)]
+    share = (psnr - low) / (high - low)
+    return math.exp(math.log(low_size) + share * (math.log(high_size) - math.log(low_size)))
+
+
+def value_at(points, size):
+    """The least value (normal error) at that many bytes, linear in the logarithm of bytes. None outside of the curve."""
+    curve = front(points, better=-1)
+    if not curve or size < curve[0][0]:
+        return None
+    for (low_size, low), (high_size, high) in zip(curve, curve[1:]):
+        if low_size <= size <= high_size:
+            share = math.log(size / low_size) / math.log(high_size / low_size)
+            return low + share * (high - low)
+    return curve[-1][1]
+
+
+def usable(rows):
+    """Rows that hold a measured surface. An exact copy has no PSNR."""
+    return [r for r in rows if r["status"] == "ok" and r["psnr"] and r["bytes"]]
+
+
+def points_of(rows, value="psnr"):
+    return [(float(r["bytes"]), float(r[value])) for r in usable(rows) if r[value] != ""]
+
+
+def by_tool(rows):
+    """Rows of one model, by tool, in the order of TOOLS."""
+    return {tool: [r for r in rows if r["tool"] == tool] for tool in TOOLS if any(r["tool"] == tool for r in rows)}
+
+
+def front_rows(rows):
+    """The rows on a tool's front."""
+    wanted = set(front(points_of(rows)))
+    return [r for r in usable(rows) if (float(r["bytes"]), float(r["psnr"])) in wanted]
+
+
+def read_recorded_rivals(path):
+    """{model: [(bytes, dB)]} of a table with columns model, bytes_at_60dB, ..."""
+    curves = {}
+    if not Path(path).is_file():
+        return curves
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            cells = ((key, row[key]) for key in row if key and key.startswith("bytes_at_") and row[key])
+            curves[row["model"]] = [(float(n), float(key[len("bytes_at_"):-len("dB")])) for key, n in cells]
+    return curves
+
+
+def psnr_curves(rows, recorded):
+    """{tool: points} of one model, with the recorded rival's where there is one."""
+    curves = {tool: points_of(of_tool) for tool, of_tool in by_tool(rows).items()}
+    if recorded:
+        curves["rivals.csv"] = recorded
+    return curves
+
+
+def cell(value, form):
+    return "-" if value is None else format(value, form)
+
+
+def markdown(head, lines):
+    out = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return "\n".join(out + ["| " + " | ".join(line) + " |" for line in lines])
+
+
+def size_table(models, recorded):
+    """Bytes at each target: every tool, then the best of gim's layouts over the best rival."""
+    lines = []
+    for model, rows in models.items():
+        curves = psnr_curves(rows, recorded.get(model))
+        sizes = {tool: [bytes_at(points, db) for db in TARGETS_DB] for tool, points in curves.items()}
+        for tool, found in sizes.items():
+            lines.append([model, label(tool)] + [cell(n, ",.0f") for n in found])
+        ratios = []
+        for i in range(len(TARGETS_DB)):
+            own = [s[i] for tool, s in sizes.items() if is_own(tool) and s[i] is not None]
+            rival = [s[i] for tool, s in sizes.items() if not is_own(tool) and s[i] is not None]
+            ratios.append(min(own) / min(rival) if own and rival else None)
+        lines.append([model, "**gim / best rival**"] + [f"**{cell(r, '.3f')}**" for r in ratios])
+    return markdown(["model", "bytes at"] + [f"{db} dB" for db in TARGETS_DB], lines)
+
+
+def normal_table(models):
+    lines = []
+    for model, rows in models.items():
+        for tool, of_tool in by_tool(rows).items():
+            points = points_of(of_tool, "normal_degrees")
+            found = [value_at(points, size) for size in NORMAL_BYTES]
+            if any(f is not None for f in found):
+                lines.append([model, label(tool)] + [cell(f, ".2f") for f in found])
+    return markdown(["model", "mean normal error, degrees, at"] + [f"{n:,} bytes" for n in NORMAL_BYTES], lines)
+
+
+def decode_table(models, psnr=70):
+    """Of each tool's front the smallest file that reaches `psnr`, decoded; and speed against Draco's there."""
+    lines = []
+    for model, rows in models.items():
+        chosen = {}
+        for tool, of_tool in by_tool(rows).items():
+            timed = [r for r in usable(of_tool) if r["decode_ms"] and float(r["psnr"]) >= psnr - 0.05]
+            if timed:
+                chosen[tool] = min(timed, key=lambda r: float(r["bytes"]))
+        draco = next((chosen[t] for t in ("lt+draco", "quadric+draco", "draco") if t in chosen), None)
+        for tool, row in chosen.items():
+            times = float(row["mtri_per_s"]) / float(draco["mtri_per_s"]) if draco else None
+            lines.append([model, label(tool), row["setting"], f"{int(row['triangles']):,}",
+                          f"{float(row['decode_ms']):.3f}", f"{float(row['mtri_per_s']):.1f}", cell(times, ".1f")])
+    return markdown(["model", f"decoding at {psnr} dB", "setting", "triangles", "ms", "Mtri/s", "times Draco's speed"],
+                    lines)
