@@ -31,6 +31,10 @@ class Failure(Exception):
     """A program that failed, in its own words."""
 
 
+class Stopped(Exception):
+    """The run is being given up."""
+
+
 class Results:
     """The rows, in memory and on disk. Appending is one write; a line torn by an interruption is dropped when read."""
 
@@ -84,6 +88,7 @@ class Programs:
     def __init__(self, paths, timeout):
         self.paths = paths
         self.timeout = timeout
+        self.lock, self.running, self.stopped = threading.Lock(), set(), False
         self.versions = {name: self._version(path) for name, path in paths.items()}
 
     @staticmethod
@@ -92,14 +97,34 @@ class Programs:
 
     def run(self, name, *arguments):
         command = [str(self.paths[name]), *map(str, arguments)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=self.timeout, check=False)
-        except subprocess.TimeoutExpired as error:
-            raise Failure(f"took more than {self.timeout} s") from error
-        if done.returncode != 0:
-            words = done.stderr.strip().splitlines()
-            raise Failure(words[-1] if words else f"exit status {done.returncode}")
-        return done.stdout
+        # In a session of its own, so that Ctrl-C reaches this script alone, which then ends them all.
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              start_new_session=True) as process:
+            with self.lock:
+                self.running.add(process)
+                if self.stopped:
+                    process.kill()
+            try:
+                out, errors = process.communicate(timeout=self.timeout)
+            except subprocess.TimeoutExpired as error:
+                process.kill()
+                raise Failure(f"took more than {self.timeout:g} s") from error
+            finally:
+                with self.lock:
+                    self.running.discard(process)
+        if self.stopped:
+            raise Stopped
+        if process.returncode != 0:
+            words = errors.strip().splitlines()
+            raise Failure(words[-1] if words else f"exit status {process.returncode}")
+        return out
+
+    def stop(self):
+        """Ends what runs; whoever waits for it gets Stopped."""
+        with self.lock:
+            self.stopped = True
+            for process in self.running:
+                process.kill()
 
 
 def slug(tool, setting):
@@ -247,8 +272,6 @@ def plan(models, tools, sizes, targets, ratios, full_bits, simplified_bits):
 def run_chain(laboratory, points, may_stop, progress):
     before = None
     for i, point in enumerate(points):
-        if progress.stopped:
-            return
         row = laboratory.results.get(point.key)
         if row is None:
             progress.begin(point)
@@ -273,7 +296,7 @@ def run_chains(laboratory, chains, jobs, progress):
                 for future in done:
                     future.result()
         except BaseException:
-            progress.stopped = True
+            laboratory.programs.stop()
             pool.shutdown(wait=True, cancel_futures=True)
             raise
 

@@ -25,6 +25,7 @@ What is missing is left out with a note. Example:
 import argparse
 import fcntl
 import os
+import signal
 import sys
 import threading
 from pathlib import Path
@@ -114,7 +115,7 @@ class Progress:
 
     def __init__(self, chains, jobs):
         self.lock = threading.Lock()
-        self.jobs, self.stopped = jobs, False
+        self.jobs = jobs
         self.left, self.seconds = {}, {}
         for points, _ in chains:
             for point in points:
@@ -179,6 +180,17 @@ def available_tools(wanted, paths):
     return kept
 
 
+def readable_models(models, programs):
+    kept = []
+    for model in models:
+        try:
+            programs.run("gim", "compare", model, model, "--samples", 1000)
+            kept.append(model)
+        except measure.Failure as failure:
+            say(f"note: LEFT OUT: {failure}")
+    return kept
+
+
 def measure_all(arguments, models, results):
     given = {"gim": arguments.gim, "gim_rivals": arguments.gim_rivals, "gim_lindstrom_turk": arguments.gim_lindstrom_turk}
     paths = {name: measure.find_program(name, given[name], ROOT) for name in PROGRAMS}
@@ -190,6 +202,7 @@ def measure_all(arguments, models, results):
     tools = available_tools(arguments.tools, paths)
 
     programs = measure.Programs(paths, arguments.timeout)
+    models = readable_models(models, programs)
     names = {model.stem for model in models}
     results.drop(lambda row: row["model"] in names and
                  (row["tool"] in arguments.redo or (arguments.retry_failed and row["status"] != "ok")))
@@ -233,8 +246,14 @@ def write_results(arguments, models, results, plots):
         say(f"pictures, tables.md and results.csv are in {arguments.out}")
 
 
+def interrupt(*_):
+    raise KeyboardInterrupt
+
+
 def main():
     arguments = parse_arguments()
+    signal.signal(signal.SIGTERM, interrupt)
+    signal.signal(signal.SIGINT, interrupt)  # ignored by default where a shell starts this in the background
     check_models(arguments.models)
     plots = import_plots(arguments.no_plots)
     arguments.out.mkdir(parents=True, exist_ok=True)
