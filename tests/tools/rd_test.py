@@ -25,6 +25,11 @@ class Curves(unittest.TestCase):
         self.assertEqual(curves.front(points), [(100, 50), (200, 60), (300, 61)])
         self.assertEqual(curves.front([(100, 5), (200, 6), (300, 2)], better=-1), [(100, 5), (300, 2)])
 
+    def test_dents_between_near_points_are_no_part_of_a_curve(self):
+        near, far = [(100, 60), (200, 60.5), (400, 62)], [(100, 60), (200, 62), (400, 68)]
+        self.assertEqual(curves.psnr_curve(near), [(100, 60), (400, 62)])
+        self.assertEqual(curves.psnr_curve(far), far)
+
     def test_bytes_are_interpolated_in_their_logarithm(self):
         points = [(1000, 60), (4000, 70)]
         self.assertAlmostEqual(curves.bytes_at(points, 65), 2000)

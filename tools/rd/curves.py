@@ -6,6 +6,7 @@ from pathlib import Path
 
 TARGETS_DB = (60, 65, 70, 75)
 NORMAL_BYTES = (4000, 8000)
+CHORD_DB = 3.0  # a point of a curve may not lie below a line between two others that are no further apart
 REACH_DB = 0.5  # a curve counts this far beyond its ends: an encoder that aims at 60 dB may land at 60.2
 
 # key: (label, colour, whether it is gim's own). Colours of Okabe and Ito: told apart by everybody.
@@ -39,10 +40,25 @@ def front(points, better=1):
     return kept
 
 
-def bytes_at(points, psnr):
-    """Bytes that reach `psnr`, linear in their logarithm between neighbours on the front. None where it is not reached."""
-    curve = front(points)
-    for (size, value) in curve:
+def psnr_curve(points):
+    """What a tool reaches: the front, less its dents. Settings come in steps, and between two files of about the same PSNR a
+    finer step would find what lies on the line between them, in (logarithm of bytes, PSNR). Longer lines would be guesses."""
+    kept = front(points)
+    line = [(math.log(size), value) for size, value in kept]
+
+    def is_dent(k):
+        for x0, y0 in line[:k]:
+            for x1, y1 in line[k + 1:]:
+                if y1 - y0 <= CHORD_DB and line[k][1] < y0 + (y1 - y0) * (line[k][0] - x0) / (x1 - x0):
+                    return True
+        return False
+
+    return [point for k, point in enumerate(kept) if not is_dent(k)]
+
+
+def bytes_at(curve, psnr):
+    """Bytes that reach `psnr`, linear in their logarithm between neighbours. None where it is not reached."""
+    for size, value in curve:
         if abs(value - psnr) < 1e-9:
             return size
     if len(curve) < 2 or psnr < curve[0][1] - REACH_DB or psnr > curve[-1][1] + REACH_DB:
@@ -79,9 +95,9 @@ def by_tool(rows):
     return {tool: [r for r in rows if r["tool"] == tool] for tool in TOOLS if any(r["tool"] == tool for r in rows)}
 
 
-def front_rows(rows):
-    """The rows on a tool's front."""
-    wanted = set(front(points_of(rows)))
+def curve_rows(rows):
+    """The rows on a tool's curve."""
+    wanted = set(psnr_curve(points_of(rows)))
     return [r for r in usable(rows) if (float(r["bytes"]), float(r["psnr"])) in wanted]
 
 
@@ -98,11 +114,11 @@ def read_recorded_rivals(path):
 
 
 def psnr_curves(rows, recorded):
-    """{tool: points} of one model, with the recorded rival's where there is one."""
+    """{tool: its curve} of one model, with the recorded rival's where there is one."""
     curves = {tool: points_of(of_tool) for tool, of_tool in by_tool(rows).items()}
     if recorded:
         curves["rivals.csv"] = recorded
-    return curves
+    return {tool: psnr_curve(points) for tool, points in curves.items()}
 
 
 def cell(value, form):
@@ -119,7 +135,7 @@ def size_table(models, recorded):
     lines = []
     for model, rows in models.items():
         curves = psnr_curves(rows, recorded.get(model))
-        sizes = {tool: [bytes_at(points, db) for db in TARGETS_DB] for tool, points in curves.items()}
+        sizes = {tool: [bytes_at(curve, db) for db in TARGETS_DB] for tool, curve in curves.items()}
         for tool, found in sizes.items():
             lines.append([model, label(tool)] + [cell(n, ",.0f") for n in found])
         ratios = []

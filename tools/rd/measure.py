@@ -203,7 +203,7 @@ class Laboratory:
     def time_decoders(self, model):
         """Decode times of the rows that matter, all in one run, so that their ratios are fair. Returns how many."""
         rows = [r for of_tool in curves.by_tool(self.results.of_model(model.stem)).values()
-                for r in curves.front_rows(of_tool)]
+                for r in curves.curve_rows(of_tool)]
         rows += [r for r in curves.usable(self.results.of_model(model.stem))
                  if r["tool"] in ("draco", "meshopt") and r["setting"] == f"bits={TIMED_BITS}" and r not in rows]
         rows = [r for r in rows if self.payload(model, r["tool"], r["setting"]).exists()]

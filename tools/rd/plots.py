@@ -34,8 +34,8 @@ def finish(figure, axes, path):
 
 
 def draw_psnr(axes, rows, recorded):
-    for tool, points in curves.psnr_curves(rows, recorded).items():
-        shown = [p for p in curves.front(points) if PLOT_DB[0] <= p[1] <= PLOT_DB[1]]
+    for tool, curve in curves.psnr_curves(rows, recorded).items():
+        shown = [p for p in curve if PLOT_DB[0] <= p[1] <= PLOT_DB[1]]
         if not shown:
             continue
         axes.plot(*zip(*shown), marker=".", markersize=4, label=curves.label(tool), **style(tool))
@@ -53,7 +53,7 @@ def psnr_picture(path, model, rows, recorded):
 def decode_picture(path, model, rows):
     figure, axes = plt.subplots(figsize=(6.4, 4.6))
     for tool, of_tool in curves.by_tool(rows).items():
-        points = sorted((float(r["psnr"]), float(r["decode_ms"])) for r in curves.front_rows(of_tool) if r["decode_ms"])
+        points = sorted((float(r["psnr"]), float(r["decode_ms"])) for r in curves.curve_rows(of_tool) if r["decode_ms"])
         points = [p for p in points if PLOT_DB[0] <= p[0] <= PLOT_DB[1]]
         if points:
             axes.plot(*zip(*points), marker=".", markersize=4, label=curves.label(tool), **style(tool))

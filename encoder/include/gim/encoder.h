@@ -73,7 +73,7 @@ struct CompareOptions {
         500000;            // area-stratified samples per direction, besides the vertices for the Hausdorff distance
     uint64_t seed = 1;     // same seed, same figures
     uint32_t threads = 0;  // 0: all cores; the result does not depend on it
-    bool normals = false;  // Comparison::normals too; about a tenth more time
+    bool normals = false;  // Comparison::normals too; about a fifth more time
 };
 
 // Mean angle in degrees between the shading normals of a sample and of the point nearest to it on the other surface. Each
