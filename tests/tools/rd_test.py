@@ -26,6 +26,7 @@ class Curves(unittest.TestCase):
         self.assertEqual(curves.front([(100, 5), (200, 6), (300, 2)], better=-1), [(100, 5), (300, 2)])
 
     def test_dents_between_near_points_are_no_part_of_a_curve(self):
+        self.assertEqual(curves.psnr_curve([(100, 50), (200, 50.1), (300, 60)]), [(100, 50), (300, 60)])
         near, far = [(100, 60), (200, 60.5), (400, 62)], [(100, 60), (200, 62), (400, 68)]
         self.assertEqual(curves.psnr_curve(near), [(100, 60), (400, 62)])
         self.assertEqual(curves.psnr_curve(far), far)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 TARGETS_DB = (60, 65, 70, 75)
 NORMAL_BYTES = (4000, 8000)
+STEP_DB = 0.2   # more bytes for less than this are no point of a curve: two sizes that aim at 60 dB land at 60.1 and 60.2
 CHORD_DB = 3.0  # a point of a curve may not lie below a line between two others that are no further apart
 REACH_DB = 0.5  # a curve counts this far beyond its ends: an encoder that aims at 60 dB may land at 60.2
 
@@ -31,11 +32,12 @@ def is_own(tool):
     return TOOLS[tool][2]
 
 
-def front(points, better=1):
-    """Of (bytes, value) the ones that no smaller file beats; `better` is 1 where more is better, -1 where less is."""
+def front(points, better=1, step=0.0):
+    """Of (bytes, value) the ones that are better, by more than `step`, than all smaller files. `better` is 1 where more is
+    better, -1 where less is."""
     kept = []
     for size, value in sorted(points, key=lambda p: (p[0], -better * p[1])):
-        if not kept or better * value > better * kept[-1][1]:
+        if not kept or better * (value - kept[-1][1]) > step:
             kept.append((size, value))
     return kept
 
@@ -43,7 +45,7 @@ def front(points, better=1):
 def psnr_curve(points):
     """What a tool reaches: the front, less its dents. Settings come in steps, and between two files of about the same PSNR a
     finer step would find what lies on the line between them, in (logarithm of bytes, PSNR). Longer lines would be guesses."""
-    kept = front(points)
+    kept = front(points, step=STEP_DB)
     line = [(math.log(size), value) for size, value in kept]
 
     def is_dent(k):
