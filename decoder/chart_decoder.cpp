@@ -267,7 +267,7 @@ bool decode_chart(const Header& header, const ChartLevelShape& shape, const Deco
                                   chart.box.rows,
                                   chart.box.steps(),
                                   shape.level,
-                                  header.quantizer,
+                                  detail_coding_of(header),
                                   1 << (header.bits - 1),
                                   true};
     const uint32_t done = stream_level + 1 == header.level_count ? 0 : chart.box.steps() - stream_level - 1;

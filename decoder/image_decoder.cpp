@@ -35,7 +35,7 @@ template <class Wavelet>
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                       const ImageWorkspace& ws, float** samples) {
     const PyramidShape shape =
-        square_shape(header.side_exponents[image], level, header.quantizer, 1 << (header.bits - 1));
+        square_shape(header.side_exponents[image], level, detail_coding_of(header), 1 << (header.bits - 1));
     PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
     new (ws.pyramid.models) BandModels();
     for (uint32_t l = header.level_count_of(image); l-- > level;) {

@@ -31,7 +31,7 @@ struct PyramidShape {
     uint32_t columns = 2, rows = 2;  // at full resolution
     uint32_t steps = 0;              // from the base to full resolution
     uint32_t level = 0;              // asked for: that many steps are left out
-    float quantizer = 0;             // 9/7 only
+    DetailCoding details;            // 9/7 only
     int32_t middle = 0;              // what base samples are stored relative to
     bool chained_base = false;       // a base value is stored relative to the one before it
 };
@@ -86,7 +86,7 @@ class PyramidDecoder {
             }
         }
         Sample* values = image(0);
-        const float step = low_band_step(shape_.quantizer, shape_.steps);
+        const float step = low_band_step(shape_.details.quantizer, shape_.steps);
         for (size_t i = 0; i < base.count(); ++i) {
             if constexpr (Wavelet::kSteps == 2) {
                 values[i] =
@@ -105,12 +105,8 @@ class PyramidDecoder {
         const bool has_parents = step > 1;
         if (has_parents) parents = bands_in(ws_.bands[slot(step - 1)], columns_at(step - 1), rows_at(step - 1));
         if (!coder.code_level(bands, has_parents ? &parents : nullptr)) return false;
-        BandSteps steps;
-        if constexpr (Wavelet::kSteps > 2) {
-            const uint32_t depth = shape_.steps - step + 1;
-            steps.edge = band_step(shape_.quantizer, depth, Orientation::kHorizontal);
-            steps.diagonal = band_step(shape_.quantizer, depth, Orientation::kDiagonal);
-        }
+        DetailSteps steps;
+        if constexpr (Wavelet::kSteps > 2) steps = shape_.details.steps_at(shape_.steps - step + 1);
         synthesize<Wavelet>(columns, rows, image(step - 1), bands, steps, static_cast<Sample*>(ws_.synthesis),
                             image(step));
         return true;

@@ -63,7 +63,7 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
         if (level > out->coarsest) return Status::kNoSuchLevel;
         out->width = halved(width, level);
         out->height = halved(height, level);
-        out->shape = {width, height, out->coarsest, level, out->chunk.quantizer, 0, false};
+        out->shape = {width, height, out->coarsest, level, {out->chunk.quantizer}, 0, false};
         return Status::kOk;
     }
 
@@ -74,7 +74,7 @@ Status open_plane(const gim_info* info, const void* bytes, size_t size, uint32_t
     while (((side - 1) >> (out->coarsest + 1)) + 1 >= least) ++out->coarsest;
     if (level > out->coarsest) return Status::kNoSuchLevel;
     out->width = out->height = ((side - 1) >> level) + 1;
-    out->shape = square_shape(exponent, level, out->chunk.quantizer, 0);
+    out->shape = square_shape(exponent, level, {out->chunk.quantizer}, 0);
     return Status::kOk;
 }
 

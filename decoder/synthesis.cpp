@@ -11,10 +11,64 @@ constexpr int low_step(
     return Wavelet::kSteps - 1 - 2 * i;
 }
 
-void load_high(const int32_t* band, size_t count, float, int32_t* row) { std::copy_n(band, count, row); }
-void load_high(const int32_t* band, size_t count, float step, float* row) {
-    for (size_t i = 0; i < count; ++i) row[i] = dequantize(band[i], step);
-}
+// Rows of the three bands as Samples: integers as they are, or dequantized.
+class IntegerDetails {
+  public:
+    IntegerDetails(const int32_t*, uint32_t, uint32_t, const LevelBands& bands, const DetailSteps&) : bands_(bands) {}
+    void load(Orientation orientation, uint32_t row, int32_t* out) const {
+        const Band& band = bands_.of(orientation);
+        std::copy_n(band.row(row), size_t{band.columns} * 3, out);
+    }
+
+  private:
+    const LevelBands& bands_;
+};
+
+class LossyDetails {
+  public:
+    LossyDetails(const float* low, uint32_t low_columns, uint32_t low_rows, const LevelBands& bands,
+                 const DetailSteps& steps)
+        : bands_(bands), steps_(steps), frames_(low, low_columns, low_rows, steps.cell_area) {}
+    void load(Orientation orientation, uint32_t row, float* out) const {
+        const Band& band = bands_.of(orientation);
+        const int32_t* values = band.row(row);
+        if (steps_.in_frames) {
+            for (uint32_t column = 0; column < band.columns; ++column)
+                load_framed(orientation, row, column, values + 3 * size_t{column}, out + 3 * size_t{column});
+        } else {
+            const float step = steps_.of(orientation);
+            for (size_t i = 0; i < size_t{band.columns} * 3; ++i) out[i] = dequantize(values[i], step);
+        }
+    }
+
+  private:
+    // Most details are zero: those need no frame.
+    void load_framed(Orientation orientation, uint32_t row, uint32_t column, const int32_t* values, float* out) const {
+        if ((values[0] | values[1] | values[2]) == 0) {
+            std::fill_n(out, 3, 0.0f);
+            return;
+        }
+        const DetailFrame frame = frames_.at(orientation, row, column);
+        float step[3], local[3];
+        steps_in(frame, steps_, orientation, step);
+        for (int k = 0; k < 3; ++k) local[k] = dequantize(values[k], step[k]);
+        out_of_frame(frame, local, out);
+    }
+
+    const LevelBands& bands_;
+    const DetailSteps& steps_;
+    FrameField frames_;
+};
+
+template <class Wavelet>
+struct DetailsOf {
+    using Type = IntegerDetails;
+};
+template <>
+struct DetailsOf<Irreversible97> {
+    using Type = LossyDetails;
+};
+
 void load_low(const int32_t* low, size_t count, int32_t* row) { std::copy_n(low, count, row); }
 void load_low(const float* low, size_t count, float* row) {
     for (size_t i = 0; i < count; ++i) row[i] = low[i] * Irreversible97::kLowGain;
@@ -84,29 +138,30 @@ class VerticalSynthesis {
 
 template <class Wavelet>
 void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
-                const BandSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image) {
+                const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image) {
     const size_t lows = low_count(columns), highs = high_count(columns), width = size_t{columns} * 3;
     auto* low_row = work;
     auto* high_row = work + 3 * (lows + 1) + 3;
     VerticalSynthesis<Wavelet> vertical(image, columns, rows);
+    const typename DetailsOf<Wavelet>::Type details(low, low_count(columns), low_count(rows), bands, steps);
     for (uint32_t i = 0; i <= rows / 2; ++i) {
         if (2 * i < rows) {
             load_low(low + i * 3 * lows, 3 * lows, low_row);
-            load_high(bands.horizontal.row(i), 3 * highs, steps.edge, high_row);
+            details.load(Orientation::kHorizontal, i, high_row);
             synthesize_row<Wavelet>(lows, highs, low_row, high_row, image + 2 * i * width);
         }
         if (2 * i + 1 < rows) {
-            load_high(bands.vertical.row(i), 3 * lows, steps.edge, low_row);
-            load_high(bands.diagonal.row(i), 3 * highs, steps.diagonal, high_row);
+            details.load(Orientation::kVertical, i, low_row);
+            details.load(Orientation::kDiagonal, i, high_row);
             synthesize_row<Wavelet>(lows, highs, low_row, high_row, image + (2 * i + 1) * width);
         }
         vertical.advance(static_cast<ptrdiff_t>(i));
     }
 }
 
-template void synthesize<Reversible53>(uint32_t, uint32_t, const int32_t*, const LevelBands&, const BandSteps&,
+template void synthesize<Reversible53>(uint32_t, uint32_t, const int32_t*, const LevelBands&, const DetailSteps&,
                                        int32_t*, int32_t*);
-template void synthesize<Irreversible97>(uint32_t, uint32_t, const float*, const LevelBands&, const BandSteps&, float*,
+template void synthesize<Irreversible97>(uint32_t, uint32_t, const float*, const LevelBands&, const DetailSteps&, float*,
                                          float*);
 
 }  // namespace gim

@@ -5,22 +5,18 @@
 #include <cstdint>
 
 #include "format/band_code.h"
+#include "format/detail_frame.h"
 #include "format/lifting.h"
 
 namespace gim {
-
-// edge: quantizer steps of the bands high in one direction and in both; 1 for the reversible wavelet (unused).
-struct BandSteps {
-    float edge = 1, diagonal = 1;
-};
 
 // Numbers (of Sample's size) that synthesize needs as work space.
 constexpr size_t synthesis_work_size(uint32_t columns) { return (size_t{columns} + 4) * 3; }
 
 // columns, rows: of the image, 2 or more. low: low_count(rows) x low_count(columns) triples. image: rows x columns triples,
-// may not overlap the inputs.
+// may not overlap the inputs. steps: of the 9/7; the reversible wavelet has none.
 template <class Wavelet>
 void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
-                const BandSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image);
+                const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image);
 
 }  // namespace gim

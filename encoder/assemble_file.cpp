@@ -55,6 +55,26 @@ void set_quantizer(std::span<const std::span<const Vec3>> positions, uint32_t bi
     for (int k = 0; k < 3; ++k) header->origin[static_cast<size_t>(k)] = static_cast<float>(low[k]);
 }
 
+void CellArea::add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns,
+                   uint32_t rows) {
+    for (size_t row = 0; row + 1 < rows; ++row) {
+        for (size_t column = 0; column + 1 < columns; ++column) {
+            const size_t a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
+            if (!defined.empty() && !(defined[a] && defined[b] && defined[c] && defined[d])) continue;
+            sum_ += 0.5 * (positions[d] - positions[a]).cross(positions[c] - positions[b]).norm();
+            ++cells_;
+        }
+    }
+}
+
+void CellArea::set_details(Header* header) const {
+    header->tangential = static_cast<uint8_t>(8 * kTangentialRatio);
+    const double area = cells_ > 0 ? sum_ / static_cast<double>(cells_) / (double{header->step} * header->step) : 0;
+    uint8_t code = 1;
+    while (code < 255 && double{cell_area_of(static_cast<uint8_t>(code + 1))} <= area) ++code;
+    header->cell_area = code;
+}
+
 std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t> seams,
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text) {

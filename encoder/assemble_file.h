@@ -23,6 +23,22 @@ struct CodedPlane {
 // Sets bits, origin and step: one isotropic step for the bounding box of all positions.
 void set_quantizer(std::span<const std::span<const Vec3>> positions, uint32_t bits, Header* header);
 
+// How the details of lossy files are coded: in frames, tangential steps this many times the normal ones. The reference
+// area is the mean over the cells of all grids; cells with a sample that is not defined do not count.
+inline constexpr double kTangentialRatio = 3;
+class CellArea {
+  public:
+    // defined: empty, or per sample.
+    void add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns,
+             uint32_t rows);
+    // To be called after set_quantizer.
+    void set_details(Header* header) const;
+
+  private:
+    double sum_ = 0;
+    uint64_t cells_ = 0;
+};
+
 // Positions in units of the header's quantizer, as interleaved triples.
 template <class Sample>
 std::vector<Sample> to_units(std::span<const Vec3> positions, const Header& header) {

@@ -1,7 +1,9 @@
 #include "encoder/code_bands.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace gim {
 namespace {
@@ -25,9 +27,9 @@ struct RealBand {
     }
 };
 
-// Mean over the eight neighbours and the two other components, each counted as four steps at most.
-float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32_t k, float step) {
-    const float most = 4 * step;
+// Mean over the eight neighbours and the two other components, each counted as four at most.
+float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32_t k) {
+    constexpr float most = 4;
     float sum = 0;
     for (uint32_t other = 0; other < 3; ++other) {
         if (other != k) sum += std::min(band.magnitude(row, column, other), most);
@@ -37,19 +39,20 @@ float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32
             if (r != row || c != column) sum += std::min(band.magnitude(r, c, k), most);
         }
     }
-    return sum / (10 * step);
+    return sum / 10;
 }
 
-std::vector<int32_t> quantize(const RealBand& band, float step) {
+// band: in steps.
+std::vector<int32_t> round_band(const RealBand& band) {
     std::vector<int32_t> out(band.values.size());
     for (uint32_t row = 0, i = 0; row < band.rows; ++row) {
         for (uint32_t column = 0; column < band.columns; ++column) {
             for (uint32_t k = 0; k < 3; ++k, ++i) {
-                const float steps = band.magnitude(row, column, k) / step;
+                const float steps = band.magnitude(row, column, k);
                 if (steps < kRoundUpFrom) continue;
                 float magnitude = std::floor(steps + (1.0f - kRoundUpFrom));
                 if (magnitude == 1 && steps < kRoundUpFrom + kLonely) {
-                    const float lonely = 1.0f - mean_neighbour(band, row, column, k, step) / kNotLonelyFrom;
+                    const float lonely = 1.0f - mean_neighbour(band, row, column, k) / kNotLonelyFrom;
                     if (steps < kRoundUpFrom + kLonely * lonely) magnitude = 0;
                 }
                 const auto q = static_cast<int32_t>(std::min(magnitude, kMaxMagnitude));
@@ -58,6 +61,36 @@ std::vector<int32_t> quantize(const RealBand& band, float step) {
         }
     }
     return out;
+}
+
+// The details of one band as multiples of their steps, rounded; and what a decoder makes of them.
+struct QuantizedBand {
+    std::vector<int32_t> integers;
+    std::vector<float> details;
+};
+
+QuantizedBand quantize(const RealBand& band, const FrameField& frames, const DetailSteps& steps,
+                       Orientation orientation) {
+    const size_t count = band.values.size() / 3;
+    std::vector<DetailFrame> frame(steps.in_frames ? count : 0);
+    std::vector<float> step(band.values.size(), steps.of(orientation)), local = band.values;
+    for (size_t i = 0; i < frame.size(); ++i) {
+        frame[i] = frames.at(orientation, static_cast<uint32_t>(i / band.columns),
+                             static_cast<uint32_t>(i % band.columns));
+        steps_in(frame[i], steps, orientation, &step[3 * i]);
+        into_frame(frame[i], &band.values[3 * i], &local[3 * i]);
+    }
+    for (size_t i = 0; i < local.size(); ++i) local[i] /= step[i];
+
+    QuantizedBand result{round_band({local, band.rows, band.columns}), {}};
+    result.details.resize(local.size());
+    for (size_t i = 0; i < local.size(); ++i) result.details[i] = dequantize(result.integers[i], step[i]);
+    for (size_t i = 0; i < frame.size(); ++i) {
+        const std::array<float, 3> in_frame = {result.details[3 * i], result.details[3 * i + 1],
+                                               result.details[3 * i + 2]};
+        out_of_frame(frame[i], in_frame.data(), &result.details[3 * i]);
+    }
+    return result;
 }
 
 // The base is not sparse: plain rounding.
@@ -70,21 +103,35 @@ std::vector<int32_t> quantize_base(const std::vector<float>& values, float step)
 
 }  // namespace
 
-Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer) {
+Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding) {
     Pyramid<int32_t> out;
     out.columns = pyramid.columns;
     out.rows = pyramid.rows;
     const uint32_t steps = pyramid.steps();
-    out.base = quantize_base(pyramid.base, low_band_step(quantizer, steps));
+    const float base_step = low_band_step(coding.quantizer, steps);
+    out.base = quantize_base(pyramid.base, base_step);
+    Pyramid<float> decoded;  // one step: from the image that a decoder has so far to the next
+    for (const int32_t q : out.base) decoded.base.push_back(static_cast<float>(q) * base_step);
+    decoded.levels.resize(1);
     for (uint32_t e = 1; e <= steps; ++e) {
-        const uint32_t columns = pyramid.columns_at(e), rows = pyramid.rows_at(e);
-        const uint32_t lows = low_count(columns), highs = high_count(columns);
+        decoded.columns = pyramid.columns_at(e);
+        decoded.rows = pyramid.rows_at(e);
+        const uint32_t columns = low_count(decoded.columns), rows = low_count(decoded.rows);
+        const DetailSteps detail_steps = coding.steps_at(steps - e + 1);
+        const FrameField frames(decoded.base.data(), columns, rows, detail_steps.cell_area);
         const AnalysisLevel<float>& level = pyramid.levels[e - 1];
-        const float edge = band_step(quantizer, steps - e + 1, Orientation::kHorizontal);
-        const float diagonal = band_step(quantizer, steps - e + 1, Orientation::kDiagonal);
-        out.levels.push_back({quantize({level.horizontal, low_count(rows), highs}, edge),
-                              quantize({level.vertical, high_count(rows), lows}, edge),
-                              quantize({level.diagonal, high_count(rows), highs}, diagonal)});
+        const uint32_t high_columns = high_count(decoded.columns), high_rows = high_count(decoded.rows);
+        QuantizedBand horizontal =
+            quantize({level.horizontal, rows, high_columns}, frames, detail_steps, Orientation::kHorizontal);
+        QuantizedBand vertical =
+            quantize({level.vertical, high_rows, columns}, frames, detail_steps, Orientation::kVertical);
+        QuantizedBand diagonal =
+            quantize({level.diagonal, high_rows, high_columns}, frames, detail_steps, Orientation::kDiagonal);
+        out.levels.push_back(
+            {std::move(horizontal.integers), std::move(vertical.integers), std::move(diagonal.integers)});
+        if (!coding.in_frames) continue;
+        decoded.levels[0] = {std::move(horizontal.details), std::move(vertical.details), std::move(diagonal.details)};
+        decoded.base = restore<Irreversible97>(decoded);
     }
     return out;
 }

@@ -7,12 +7,13 @@
 
 #include "encoder/range_encoder.h"
 #include "encoder/wavelet_analysis.h"
+#include "format/detail_frame.h"
 
 namespace gim {
 
-// Integer bands of one image; lossless ones as they are, lossy ones divided by their band's step and rounded with a
-// dead zone. quantizer: units.
-Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, float quantizer);
+// Integer bands of one image: divided by their band's step and rounded with a dead zone. Details in frames are those of
+// the image that a decoder has at that step.
+Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding);
 
 // Positions' base is stored relative to the middle of their range.
 template <class Sample>

@@ -108,6 +108,12 @@ Result<ChartFileWriter> ChartFileWriter::create(const ChartImages& images, const
     const std::vector<Vec3> defined = defined_positions(images);
     const std::span<const Vec3> all = defined;
     set_quantizer({&all, 1}, parameters.bits, &header);
+    if (header.coding == Coding::kLossy) {
+        CellArea area;
+        for (size_t c = 0; c < images.charts.size(); ++c)
+            area.add(images.positions[c], images.defined[c], images.charts[c].columns, images.charts[c].rows);
+        area.set_details(&header);
+    }
     writer.charts_ = images.charts;
     writer.mates_ = images.mates;
     writer.borders_ = images.levels;
@@ -145,7 +151,7 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
     std::vector<Pyramid<int32_t>> bands;
     for (size_t c = 0; c < charts_.size(); ++c) {
         bands.push_back(header.coding == Coding::kLossless ? lossless_[c]
-                                                           : quantize_bands(lossy_[c], header.quantizer));
+                                                           : quantize_bands(lossy_[c], detail_coding_of(header)));
         chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }

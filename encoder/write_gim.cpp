@@ -73,6 +73,11 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     std::vector<std::span<const Vec3>> positions;
     for (const GeometryImage& image : images) positions.push_back(image.positions);
     set_quantizer(positions, parameters.bits, &header);
+    if (header.coding == Coding::kLossy) {
+        CellArea area;
+        for (const GeometryImage& image : images) area.add(image.positions, {}, image.side, image.side);
+        area.set_details(&header);
+    }
 
     for (const GeometryImage& image : images) {
         if (parameters.lossless) {
@@ -99,7 +104,7 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
     std::vector<std::vector<uint8_t>> sizes(header.level_count), streams(header.level_count);
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         Pyramid<int32_t> bands =
-            header.coding == Coding::kLossless ? lossless_[i] : quantize_bands(lossy_[i], header.quantizer);
+            header.coding == Coding::kLossless ? lossless_[i] : quantize_bands(lossy_[i], detail_coding_of(header));
         const uint32_t levels = header.level_count_of(i);
         const auto coded = code_bands(bands, levels);
         for (uint32_t k = 0; k < levels; ++k) {

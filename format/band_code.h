@@ -42,6 +42,12 @@ struct LevelBands {
     Band horizontal;  // low_count(rows) x high_count(columns)
     Band vertical;    // high_count(rows) x low_count(columns)
     Band diagonal;    // high_count(rows) x high_count(columns)
+
+    const Band& of(Orientation orientation) const {
+        return orientation == Orientation::kHorizontal ? horizontal
+               : orientation == Orientation::kVertical ? vertical
+                                                       : diagonal;
+    }
 };
 
 // The adaptive state of one image; it goes on from level to level.

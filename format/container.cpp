@@ -144,7 +144,8 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     }
     if (!reader.read_f32(&header->step) || !in_range(header->step, kMinStep, kMaxStep)) return Status::kMalformed;
     if (header->coding == Coding::kLossy &&
-        (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer)))
+        (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer) ||
+         !reader.read_u8(&header->tangential) || !reader.read_u8(&header->cell_area)))
         return Status::kMalformed;
     if (kind & kPsnrFlag) {
         const size_t psnr_at = reader.position();
@@ -185,7 +186,11 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
     }
     for (const float o : header.origin) append_f32(o, &rest);
     append_f32(header.step, &rest);
-    if (header.coding == Coding::kLossy) append_f32(header.quantizer, &rest);
+    if (header.coding == Coding::kLossy) {
+        append_f32(header.quantizer, &rest);
+        rest.push_back(header.tangential);
+        rest.push_back(header.cell_area);
+    }
     for (const uint8_t psnr : header.level_psnr) rest.push_back(psnr);
     for (const Chunk& chunk : chunks) {
         append_leb128(

@@ -47,6 +47,14 @@ inline constexpr float kMaxOrigin = 0x1p100f;                              // gr
 inline constexpr float kMinStep = 0x1p-100f, kMaxStep = 0x1p76f;           // object units per unit
 inline constexpr float kMinQuantizer = 0x1p-16f, kMaxQuantizer = 0x1p20f;  // units
 
+// Area, in units^2, that a header's code stands for: 4, 5, 6 or 7 times a power of two, 2^-18 and more; 0: none.
+constexpr float cell_area_of(uint8_t code) {
+    if (code == 0) return 0;
+    float area = static_cast<float>(4 + (code & 3)) * 0x1p-20f;
+    for (uint32_t k = code >> 2; k > 0; --k) area *= 2;
+    return area;
+}
+
 struct Chunk {
     ChunkType type = ChunkType::kText;
     bool optional = false;  // a reader that does not know the type may skip it
@@ -64,7 +72,10 @@ struct Header {
     uint32_t level_count = 0;
     std::array<float, 3> origin{};
     float step = 1;
-    float quantizer = 0;                      // kLossy only
+    float quantizer = 0;                      // kLossy only, as the next two
+    uint8_t tangential = 0;                   // step of tangential components over that of normal ones, in eighths;
+                                              // 0: details are not in frames
+    uint8_t cell_area = 0;                    // code of the area that steps refer to (cell_area_of)
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
     std::span<const uint8_t> level_psnr;      // empty, or per level, coarsest first: half decibels, 0: not known

@@ -15,7 +15,7 @@ using test::Random;
 
 // Undoes all levels. Bands are given as integers to synthesize; steps say what one is worth.
 template <class Wavelet>
-std::vector<typename Wavelet::Sample> synthesize_all(Pyramid<int32_t> bands, const std::vector<BandSteps>& steps,
+std::vector<typename Wavelet::Sample> synthesize_all(Pyramid<int32_t> bands, const std::vector<DetailSteps>& steps,
                                                      std::vector<typename Wavelet::Sample> image) {
     using Sample = typename Wavelet::Sample;
     for (size_t e = 1; e <= bands.levels.size(); ++e) {
@@ -35,7 +35,7 @@ TEST(Reversible53, EverySampleComesBackAtEverySide) {
         std::vector<int32_t> image(size_t{side} * side * 3);
         for (int32_t& v : image) v = static_cast<int32_t>(random.below(1u << 20));
         const Pyramid<int32_t> bands = analyse<Reversible53>(image, side);
-        EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<BandSteps>(bands.levels.size()), bands.base), image);
+        EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<DetailSteps>(bands.levels.size()), bands.base), image);
     }
 }
 
@@ -48,7 +48,7 @@ TEST(Reversible53, EverySampleComesBackFromRectanglesOfAnySize) {
             for (uint32_t steps = 0; steps == 0 || std::min(halved(columns, steps - 1), halved(rows, steps - 1)) >= 2;
                  ++steps) {
                 const Pyramid<int32_t> bands = analyse<Reversible53>(image, columns, rows, steps);
-                EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<BandSteps>(steps), bands.base), image)
+                EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<DetailSteps>(steps), bands.base), image)
                     << columns << " x " << rows << ", " << steps << " steps";
                 if (steps == 4) break;
             }
@@ -102,7 +102,7 @@ TEST(Irreversible97, FineStepsGiveTheImageBack) {
     for (const auto& l : real.levels)
         bands.levels.push_back({to_integers(l.horizontal), to_integers(l.vertical), to_integers(l.diagonal)});
     const auto back =
-        synthesize_all<Irreversible97>(bands, std::vector<BandSteps>(real.levels.size(), {step, step}), real.base);
+        synthesize_all<Irreversible97>(bands, std::vector<DetailSteps>(real.levels.size(), {step, step}), real.base);
     for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(back[i], image[i], 0.02f);
 }
 
@@ -125,7 +125,7 @@ TEST(BandNorms, AreThoseOfTheSynthesisFunctions) {
                          : orientation == Orientation::kVertical ? l.vertical
                                                                  : l.diagonal;
             band[(h / 2 * columns + h / 2) * 3] = 1;
-            const auto image = synthesize_all<Irreversible97>(bands, std::vector<BandSteps>(exponent, {1, 1}),
+            const auto image = synthesize_all<Irreversible97>(bands, std::vector<DetailSteps>(exponent, {1, 1}),
                                                               std::vector<float>(12, 0.0f));
             double energy = 0;
             for (const float v : image) energy += double{v} * double{v};
