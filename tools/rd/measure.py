@@ -23,7 +23,6 @@ RATIOS = (0.7, 0.5, 0.35, 0.25, 0.17, 0.12, 0.085, 0.06, 0.04, 0.028, 0.02, 0.01
 FULL_BITS = tuple(range(8, 17))
 SIMPLIFIED_BITS = tuple(range(7, 15))
 SATURATED_DB = 0.05  # where a bit more gains less, still more bits are not tried
-TIMED_BITS = 12      # full meshes at this many bits are always timed: the usual setting
 SUFFIX = {"draco": ".drc", "meshopt": ".mzs"}
 
 
@@ -205,7 +204,7 @@ class Laboratory:
         rows = [r for of_tool in curves.by_tool(self.results.of_model(model.stem)).values()
                 for r in curves.curve_rows(of_tool)]
         rows += [r for r in curves.usable(self.results.of_model(model.stem))
-                 if r["tool"] in ("draco", "meshopt") and r["setting"] == f"bits={TIMED_BITS}" and r not in rows]
+                 if curves.is_usual_full_mesh(r) and r not in rows]
         rows = [r for r in rows if self.payload(model, r["tool"], r["setting"]).exists()]
         if not rows or all(r["decode_ms"] for r in rows):
             return 0

@@ -237,7 +237,7 @@ def write_results(arguments, models, results, plots):
     failed = [row for of_model in rows.values() for row in of_model if row["status"] != "ok"]
     text = "\n\n".join([curves.size_table(rows, recorded), curves.normal_table(rows), curves.decode_table(rows)])
     if failed:
-        text += f"\n\n{len(failed)} settings failed:\n" + "\n".join(
+        text += f"\n\n{len(failed)} settings gave no file:\n" + "\n".join(
             f"- {r['model']}, {r['tool']}, {r['setting']}: {r['status'][len('failed: '):]}" for r in failed)
     (arguments.out / "tables.md").write_text(text + "\n", encoding="utf-8")
     print(text)
