@@ -43,11 +43,11 @@ class Curves(unittest.TestCase):
         self.assertIsNone(curves.bytes_at(points, 71))
         self.assertIsNone(curves.bytes_at([], 60))
 
-    def test_normal_error_is_that_of_the_best_file_of_that_size(self):
-        points = [(1000, 8.0), (2000, 9.0), (4000, 4.0)]
-        self.assertAlmostEqual(curves.value_at(points, 2000), 6.0)
-        self.assertEqual(curves.value_at(points, 9000), 4.0)
-        self.assertIsNone(curves.value_at(points, 999))
+    def test_values_between_sizes_are_interpolated_and_kept_beyond_the_largest(self):
+        curve = [(4000, 4.0), (1000, 8.0)]
+        self.assertAlmostEqual(curves.value_at(curve, 2000), 6.0)
+        self.assertEqual(curves.value_at(curve, 9000), 4.0)
+        self.assertIsNone(curves.value_at(curve, 999))
 
     def test_recorded_rivals_are_read_and_empty_cells_left_out(self):
         with tempfile.TemporaryDirectory() as folder:

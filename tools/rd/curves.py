@@ -72,9 +72,9 @@ def bytes_at(curve, psnr):
     return math.exp(math.log(low_size) + share * (math.log(high_size) - math.log(low_size)))
 
 
-def value_at(points, size):
-    """The least value (normal error) at that many bytes, linear in the logarithm of bytes. None outside of the curve."""
-    curve = front(points, better=-1)
+def value_at(curve, size):
+    """The value at that many bytes, linear in their logarithm. None where there is no smaller file."""
+    curve = sorted(curve)
     if not curve or size < curve[0][0]:
         return None
     for (low_size, low), (high_size, high) in zip(curve, curve[1:]):
@@ -151,14 +151,18 @@ def size_table(models, recorded):
 
 
 def normal_table(models):
+    """Normal error of the files on the PSNR curve, and the least that any setting gives for so many bytes."""
     lines = []
     for model, rows in models.items():
         for tool, of_tool in by_tool(rows).items():
-            points = points_of(of_tool, "normal_degrees")
-            found = [value_at(points, size) for size in NORMAL_BYTES]
+            chosen = points_of(curve_rows(of_tool), "normal_degrees")
+            least = front(points_of(of_tool, "normal_degrees"), better=-1)
+            found = [value_at(curve, size) for curve in (chosen, least) for size in NORMAL_BYTES]
             if any(f is not None for f in found):
                 lines.append([model, label(tool)] + [cell(f, ".2f") for f in found])
-    return markdown(["model", "mean normal error, degrees, at"] + [f"{n:,} bytes" for n in NORMAL_BYTES], lines)
+    sizes = [f"{n:,} bytes" for n in NORMAL_BYTES]
+    return markdown(["model", "mean normal error, degrees, at"] + sizes + [f"{n}, best setting for it" for n in sizes],
+                    lines)
 
 
 def is_usual_full_mesh(row):

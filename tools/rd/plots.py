@@ -68,7 +68,7 @@ def decode_picture(path, model, rows):
 def normal_picture(path, model, rows):
     figure, axes = plt.subplots(figsize=(6.4, 4.6))
     for tool, of_tool in curves.by_tool(rows).items():
-        shown = curves.front(curves.points_of(of_tool, "normal_degrees"), better=-1)
+        shown = sorted(curves.points_of(curves.curve_rows(of_tool), "normal_degrees"))  # the files of the PSNR curve
         if shown:
             axes.plot(*zip(*shown), marker=".", markersize=4, label=curves.label(tool), **style(tool))
     byte_axis(axes)
