@@ -27,8 +27,7 @@ struct ImageWorkspace : PlaneWorkspace {
 };
 
 // The pyramid of a square of side 2^exponent + 1.
-inline PyramidShape square_shape(uint32_t exponent, uint32_t level, const DetailCoding& details,
-                                 int32_t middle) {
+inline PyramidShape square_shape(uint32_t exponent, uint32_t level, const DetailCoding& details, int32_t middle) {
     const uint32_t side = (1u << exponent) + 1;
     return {side, side, exponent, level, details, middle, false};
 }

@@ -161,7 +161,7 @@ void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample*
 
 template void synthesize<Reversible53>(uint32_t, uint32_t, const int32_t*, const LevelBands&, const DetailSteps&,
                                        int32_t*, int32_t*);
-template void synthesize<Irreversible97>(uint32_t, uint32_t, const float*, const LevelBands&, const DetailSteps&, float*,
-                                         float*);
+template void synthesize<Irreversible97>(uint32_t, uint32_t, const float*, const LevelBands&, const DetailSteps&,
+                                         float*, float*);
 
 }  // namespace gim

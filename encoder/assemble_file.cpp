@@ -55,8 +55,7 @@ void set_quantizer(std::span<const std::span<const Vec3>> positions, uint32_t bi
     for (int k = 0; k < 3; ++k) header->origin[static_cast<size_t>(k)] = static_cast<float>(low[k]);
 }
 
-void CellArea::add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns,
-                   uint32_t rows) {
+void CellArea::add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns, uint32_t rows) {
     for (size_t row = 0; row + 1 < rows; ++row) {
         for (size_t column = 0; column + 1 < columns; ++column) {
             const size_t a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;

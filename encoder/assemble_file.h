@@ -29,8 +29,7 @@ inline constexpr double kTangentialRatio = 3;
 class CellArea {
   public:
     // defined: empty, or per sample.
-    void add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns,
-             uint32_t rows);
+    void add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns, uint32_t rows);
     // To be called after set_quantizer.
     void set_details(Header* header) const;
 

@@ -75,8 +75,8 @@ QuantizedBand quantize(const RealBand& band, const FrameField& frames, const Det
     std::vector<DetailFrame> frame(steps.in_frames ? count : 0);
     std::vector<float> step(band.values.size(), steps.of(orientation)), local = band.values;
     for (size_t i = 0; i < frame.size(); ++i) {
-        frame[i] = frames.at(orientation, static_cast<uint32_t>(i / band.columns),
-                             static_cast<uint32_t>(i % band.columns));
+        frame[i] =
+            frames.at(orientation, static_cast<uint32_t>(i / band.columns), static_cast<uint32_t>(i % band.columns));
         steps_in(frame[i], steps, orientation, &step[3 * i]);
         into_frame(frame[i], &band.values[3 * i], &local[3 * i]);
     }
@@ -103,7 +103,7 @@ std::vector<int32_t> quantize_base(const std::vector<float>& values, float step)
 
 }  // namespace
 
-Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding) {
+QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding) {
     Pyramid<int32_t> out;
     out.columns = pyramid.columns;
     out.rows = pyramid.rows;
@@ -133,7 +133,7 @@ Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, const DetailCodin
         decoded.levels[0] = {std::move(horizontal.details), std::move(vertical.details), std::move(diagonal.details)};
         decoded.base = restore<Irreversible97>(decoded);
     }
-    return out;
+    return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
 }
 
 BandScratch::BandScratch(uint32_t columns)

@@ -13,7 +13,11 @@ namespace gim {
 
 // Integer bands of one image: divided by their band's step and rounded with a dead zone. Details in frames are those of
 // the image that a decoder has at that step.
-Pyramid<int32_t> quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding);
+struct QuantizedImage {
+    Pyramid<int32_t> bands;
+    std::vector<float> image;  // with details in frames: what a decoder makes of them, up to rounding; else empty
+};
+QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding);
 
 // Positions' base is stored relative to the middle of their range.
 template <class Sample>

@@ -7,6 +7,7 @@
 #include "encoder/choose_layout.h"
 #include "encoder/clean.h"
 #include "encoder/encode_charts.h"
+#include "encoder/encode_squares.h"
 #include "encoder/finish_encoding.h"
 #include "encoder/input_colors.h"
 #include "encoder/result.h"
@@ -40,8 +41,8 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
         const CodingJob job = code_charts(charts, report);
         return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
     }
-    GIM_TRY(images, make_square_images(cleaned.mesh, options, clock, observer, report));
-    const CodingJob job = code_squares(images, report);
+    GIM_TRY(squares, make_square_images(cleaned.mesh, options, clock, observer, report));
+    const CodingJob job = code_squares(std::move(squares), options, clock, report);
     return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
 }
 

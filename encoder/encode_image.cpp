@@ -1,7 +1,7 @@
 // An existing geometry image -> .gim: the driver for images that are sampled already.
 #include <algorithm>
 
-#include "encoder/finish_encoding.h"
+#include "encoder/encode_squares.h"
 #include "encoder/grid_surface.h"
 #include "encoder/import_image.h"
 #include "encoder/result.h"
@@ -29,8 +29,10 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
     // Levels coarser than the node grid cannot be closed, so they are not kept apart.
     options.side = image.side;
     options.node_side = std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side, 5u));
-    const std::vector<GeometryImage> images = {std::move(image)};
-    const CodingJob job = code_squares(images, encoded.report);
+    SquareImages squares;
+    squares.images.push_back(std::move(image));
+    squares.surfaces.push_back(surface);
+    const CodingJob job = code_squares(std::move(squares), options, clock, encoded.report);
     return finish_encoding(job, std::move(surface), {}, options, clock, std::move(encoded));
 }
 

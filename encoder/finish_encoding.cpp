@@ -25,29 +25,96 @@ Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceS
     return reference.compare(decoded, options);
 }
 
-// Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
-Result<std::vector<uint8_t>> code_and_check(const CodingJob& job, CodingParameters parameters,
-                                            const EncodeOptions& options, const ReferenceSurface& reference) {
-    parameters.lossless = options.rate.kind == RateTarget::Kind::kLossless;
-    parameters.quantizer = first_quantizer(options.rate, options.bits);
-    GIM_TRY(writer, job.make_writer(parameters));
-    CompareOptions quick, full;
-    quick.threads = full.threads = options.threads;
-    quick.samples = kSearchSamples;
-    const JudgeFile judge = [&](std::span<const uint8_t> bytes) -> Result<double> {
-        GIM_TRY(comparison, compare_file(bytes, reference, quick));
-        return comparison.psnr;
-    };
-    RateTarget target = options.rate;
-    for (int attempt = 0;; ++attempt) {
-        GIM_TRY(bytes, code_to_target(*writer, parameters.quantizer, target, judge));
-        if (target.kind != RateTarget::Kind::kPsnr) return bytes;
-        GIM_TRY(comparison, compare_file(bytes, reference, full));
-        const double missing = options.rate.value - comparison.psnr;
-        if (missing <= 0 || attempt == kMostAttempts) return bytes;
-        target.value += missing + 0.01;
+class RateSearch {
+  public:
+    RateSearch(const CodingJob& job, CodingParameters parameters, const EncodeOptions& options,
+               const ReferenceSurface& reference)
+        : job_(job), parameters_(std::move(parameters)), target_(options.rate), reference_(reference) {
+        parameters_.lossless = target_.kind == RateTarget::Kind::kLossless;
+        quick_.threads = full_.threads = options.threads;
+        quick_.samples = kSearchSamples;
     }
-}
+
+    // Fits what is coded to quantizers until one is near the target's, then finds that.
+    Result<std::vector<uint8_t>> run(double quantizer) {
+        if (job_.fit == nullptr || target_.kind == RateTarget::Kind::kLossless) return search(quantizer);
+        if (target_.kind != RateTarget::Kind::kQuality) {
+            GIM_TRY(nearer, approach(quantizer));
+            quantizer = nearer;
+        }
+        for (int again = 0;; ++again) {
+            GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kFinal));
+            (void)fitted;
+            auto bytes = search(quantizer);
+            if (target_.kind == RateTarget::Kind::kQuality || again == kMostRefits) return bytes;
+            // A fit to too coarse a quantizer may not reach the target.
+            const double found = bytes.ok() ? quantizer_of(bytes.value()) : quantizer / 2;
+            if (std::abs(std::log2(found / quantizer)) < kNearEnough) return bytes;
+            quantizer = found;
+        }
+    }
+
+  private:
+    static constexpr int kMostApproaches = 4, kMostRefits = 3;
+    static constexpr double kNearEnough = 0.25;  // octaves between the quantizer of the fit and that of the file
+    static constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
+
+    Result<bool> fit(double quantizer, CodedFit::Effort effort) {
+        parameters_.quantizer = quantizer;
+        return job_.fit(parameters_, effort);
+    }
+
+    // By quick fits, each of which begins where the one before ended.
+    Result<double> approach(double quantizer) {
+        for (int k = 0; k < kMostApproaches; ++k) {
+            GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kSearch));
+            (void)fitted;
+            GIM_TRY(writer, job_.make_writer(parameters_));
+            const std::vector<uint8_t> bytes = writer->write(quantizer);
+            double octaves = 0;  // by which the quantizer is too fine
+            if (target_.kind == RateTarget::Kind::kPsnr) {
+                GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
+                octaves = (comparison.psnr - target_.value) / kDecibelPerOctave;
+            } else {
+                octaves = std::log(double(bytes.size()) / target_.value) / std::log(kBytesPerOctave);
+            }
+            quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
+            if (std::abs(octaves) < kNearEnough) break;
+        }
+        return quantizer;
+    }
+
+    // Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
+    Result<std::vector<uint8_t>> search(double quantizer) const {
+        CodingParameters parameters = parameters_;
+        parameters.quantizer = quantizer;
+        GIM_TRY(writer, job_.make_writer(parameters));
+        const JudgeFile judge = [&](std::span<const uint8_t> bytes) -> Result<double> {
+            GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
+            return comparison.psnr;
+        };
+        RateTarget target = target_;
+        for (int attempt = 0;; ++attempt) {
+            GIM_TRY(bytes, code_to_target(*writer, quantizer, target, judge));
+            if (target.kind != RateTarget::Kind::kPsnr) return bytes;
+            GIM_TRY(comparison, compare_file(bytes, reference_, full_));
+            const double missing = target_.value - comparison.psnr;
+            if (missing <= 0 || attempt == kMostAttempts) return bytes;
+            target.value += missing + 0.01;
+        }
+    }
+
+    static double quantizer_of(std::span<const uint8_t> bytes) {
+        const auto info = read_own_info(bytes);
+        return info.ok() ? double{info.value().quantizer} : 0;
+    }
+
+    const CodingJob& job_;
+    CodingParameters parameters_;
+    const RateTarget target_;
+    const ReferenceSurface& reference_;
+    CompareOptions quick_, full_;
+};
 
 uint64_t sideband_size(std::span<const uint8_t> bytes) {
     gim_info info;
@@ -117,25 +184,6 @@ Result<bool> check_options(const EncodeOptions& options) {
     return true;
 }
 
-CodingJob code_squares(const std::vector<GeometryImage>& images, EncodeReport& report) {
-    report.layout = Layout::kGim;
-    report.images = static_cast<uint32_t>(images.size());
-    for (const GeometryImage& image : images) {
-        if (image.side > report.side) report.node_side = image.sideband.node_side;
-        report.side = std::max(report.side, image.side);
-        report.samples += uint64_t{image.side} * image.side;
-        report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
-    }
-    report.width = report.height = report.side;
-    CodingJob job;
-    job.make_writer = [&images](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
-        GIM_TRY(writer, GimWriter::create(images, parameters));
-        return std::unique_ptr<FileWriter>(new GimWriter(std::move(writer)));
-    };
-    job.make_planes = [&images](const PlaneMaker& maker) { return maker.make(images); };
-    return job;
-}
-
 Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const TriangleMesh& input,
                                 const EncodeOptions& options, StageClock& clock, Encoded encoded) {
     const ReferenceSurface surface(std::move(reference), options.threads);
@@ -155,7 +203,8 @@ Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const Tria
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
     parameters.level_psnr = true;
-    GIM_TRY(bytes, code_and_check(job, parameters, options, surface));
+    RateSearch search(job, parameters, options, surface);
+    GIM_TRY(bytes, search.run(first_quantizer(options.rate, options.bits)));
     encoded.bytes = std::move(bytes);
 
     clock.begin(Stage::kCompare);

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "encoder/fit_coded.h"
 #include "encoder/make_planes.h"
 #include "encoder/mesh.h"
 #include "encoder/stage_clock.h"
@@ -24,9 +25,9 @@ Result<bool> check_options(const EncodeOptions& options);
 struct CodingJob {
     std::function<Result<std::unique_ptr<FileWriter>>(const CodingParameters&)> make_writer;
     std::function<Result<std::vector<CodedPlane>>(const PlaneMaker&)> make_planes;
+    // Fits what is coded to the quantizer of the parameters; writers made afterwards code the result. Empty: no such fit.
+    std::function<Result<bool>(const CodingParameters&, CodedFit::Effort)> fit = nullptr;
 };
-// Squares; describes them in the report as well. The images must outlive the job.
-CodingJob code_squares(const std::vector<GeometryImage>& images, EncodeReport& report);
 
 // Codes to the target of the options, judging the decoded surface against `reference`, and completes the report.
 // `input`: the mesh as read, for its colours.

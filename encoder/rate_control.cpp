@@ -97,9 +97,14 @@ Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget
 
 }  // namespace
 
+double clamped_quantizer(double quantizer) { return std::clamp(quantizer, std::exp2(kFinest), std::exp2(kCoarsest)); }
+
+// PSNR and size targets begin where scanned surfaces end up: 68 dB at 16 steps of a 12-bit quantizer, 4.3 dB an octave.
 double first_quantizer(const RateTarget& target, uint32_t bits) {
-    const double start = quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, bits);
-    return std::clamp(start, std::exp2(kFinest), std::exp2(kCoarsest));
+    const double of_12_bits = std::exp2(int(bits) - 12);
+    if (target.kind == RateTarget::Kind::kPsnr)
+        return clamped_quantizer(16 * of_12_bits * std::exp2((68 - target.value) / 4.3));
+    return clamped_quantizer(quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, bits));
 }
 
 Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateTarget& target, const JudgeFile& judge) {

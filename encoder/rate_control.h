@@ -23,6 +23,9 @@ using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 Result<std::vector<uint8_t>> code_to_target(const FileWriter& writer, double first, const RateTarget& target,
                                             const JudgeFile& judge);
 
+// Into the range that searches cover.
+double clamped_quantizer(double quantizer);
+
 // That of a quality, or of quality 75 for searches.
 double first_quantizer(const RateTarget& target, uint32_t bits);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "encoder/refine.h"
 #include "encoder/single_chart.h"
@@ -43,8 +44,8 @@ void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& 
 
 }  // namespace
 
-Result<std::vector<GeometryImage>> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                                      const Observer& observer, EncodeReport& report) {
+Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                        const Observer& observer, EncodeReport& report) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
     std::vector<double> areas;
@@ -74,7 +75,7 @@ Result<std::vector<GeometryImage>> make_square_images(const Mesh& mesh, const En
         add_to_report(chart.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
         images.push_back(std::move(chart.value().image));
     }
-    return images;
+    return SquareImages{std::move(images), std::move(parts)};
 }
 
 }  // namespace gim

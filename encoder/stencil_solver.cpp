@@ -13,8 +13,6 @@ namespace {
 
 constexpr size_t kRowsPerBlock = 16;
 
-using Planes = std::array<std::vector<float>, 3>;
-
 Planes make_planes(size_t count) {
     Planes planes;
     for (auto& plane : planes) plane.assign(count, 0.0f);
@@ -186,48 +184,8 @@ class Solver {
         return total;
     }
 
-    // out[begin..end) += block[begin - block_shift ..) * in[begin + shift ..)
-    void accumulate(StencilMatrix::Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift,
-                    const Planes& in, Planes& out) const {
-        const auto n = static_cast<ptrdiff_t>(end - begin);
-        const auto base = static_cast<ptrdiff_t>(begin);
-        const float* b[6];
-        for (size_t k = 0; k < 6; ++k) b[k] = matrix_.plane(kind, k) + base + block_shift;
-        const float *x = in[0].data() + base + shift, *y = in[1].data() + base + shift,
-                    *z = in[2].data() + base + shift;
-        float* __restrict ox = out[0].data() + base;
-        float* __restrict oy = out[1].data() + base;
-        float* __restrict oz = out[2].data() + base;
-        for (ptrdiff_t i = 0; i < n; ++i) {
-            ox[i] += b[0][i] * x[i] + b[1][i] * y[i] + b[2][i] * z[i];
-            oy[i] += b[1][i] * x[i] + b[3][i] * y[i] + b[4][i] * z[i];
-            oz[i] += b[2][i] * x[i] + b[4][i] * y[i] + b[5][i] * z[i];
-        }
-    }
-
-    // A block between two samples is stored with the first of them; each row gathers from itself and its two
-    // neighbours.
     void apply(const Planes& in, Planes& out) const {
-        const auto width = static_cast<ptrdiff_t>(width_);
-        parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {
-            for (size_t row = first; row < last; ++row) {
-                const size_t begin = row * width_, end = begin + width_;
-                for (auto& plane : out) std::fill(plane.begin() + begin, plane.begin() + end, 0.0f);
-                accumulate(StencilMatrix::kDiagonal, begin, end, 0, 0, in, out);
-                accumulate(StencilMatrix::kEast, begin, end - 1, 0, 1, in, out);
-                accumulate(StencilMatrix::kEast, begin + 1, end, -1, -1, in, out);
-                if (row + 1 < height_) {
-                    accumulate(StencilMatrix::kSouth, begin, end, 0, width, in, out);
-                    accumulate(StencilMatrix::kSouthEast, begin, end - 1, 0, width + 1, in, out);
-                    accumulate(StencilMatrix::kSouthWest, begin + 1, end, 0, width - 1, in, out);
-                }
-                if (row > 0) {
-                    accumulate(StencilMatrix::kSouth, begin, end, -width, -width, in, out);
-                    accumulate(StencilMatrix::kSouthEast, begin + 1, end, -width - 1, -width - 1, in, out);
-                    accumulate(StencilMatrix::kSouthWest, begin, end - 1, -width + 1, -width + 1, in, out);
-                }
-            }
-        });
+        matrix_.multiply(in, out);
         sum_over_classes(out);
         for_rows([&](size_t begin, size_t end) {
             for (auto& plane : out) {
@@ -246,6 +204,50 @@ class Solver {
 };
 
 }  // namespace
+
+// out[begin..end) += block[begin - block_shift ..) * in[begin + shift ..)
+void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift,
+                               const Planes& in, Planes& out) const {
+    const auto n = static_cast<ptrdiff_t>(end - begin);
+    const auto base = static_cast<ptrdiff_t>(begin);
+    const float* b[6];
+    for (size_t k = 0; k < 6; ++k) b[k] = plane(kind, k) + base + block_shift;
+    const float *x = in[0].data() + base + shift, *y = in[1].data() + base + shift, *z = in[2].data() + base + shift;
+    float* __restrict ox = out[0].data() + base;
+    float* __restrict oy = out[1].data() + base;
+    float* __restrict oz = out[2].data() + base;
+    for (ptrdiff_t i = 0; i < n; ++i) {
+        ox[i] += b[0][i] * x[i] + b[1][i] * y[i] + b[2][i] * z[i];
+        oy[i] += b[1][i] * x[i] + b[3][i] * y[i] + b[4][i] * z[i];
+        oz[i] += b[2][i] * x[i] + b[4][i] * y[i] + b[5][i] * z[i];
+    }
+}
+
+// A block between two samples is stored with the first of them; each row gathers from itself and its two neighbours.
+void StencilMatrix::multiply(const Planes& in, Planes& out) const {
+    const auto width = static_cast<ptrdiff_t>(width_);
+    parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {
+        for (size_t row = first; row < last; ++row) {
+            const size_t begin = row * width_, end = begin + width_;
+            for (auto& plane : out)
+                std::fill(plane.begin() + static_cast<ptrdiff_t>(begin), plane.begin() + static_cast<ptrdiff_t>(end),
+                          0.0f);
+            accumulate(kDiagonal, begin, end, 0, 0, in, out);
+            accumulate(kEast, begin, end - 1, 0, 1, in, out);
+            accumulate(kEast, begin + 1, end, -1, -1, in, out);
+            if (row + 1 < height_) {
+                accumulate(kSouth, begin, end, 0, width, in, out);
+                accumulate(kSouthEast, begin, end - 1, 0, width + 1, in, out);
+                accumulate(kSouthWest, begin + 1, end, 0, width - 1, in, out);
+            }
+            if (row > 0) {
+                accumulate(kSouth, begin, end, -width, -width, in, out);
+                accumulate(kSouthEast, begin + 1, end, -width - 1, -width - 1, in, out);
+                accumulate(kSouthWest, begin, end - 1, -width + 1, -width + 1, in, out);
+            }
+        }
+    });
+}
 
 Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const GridGluing& gluing,
                const std::vector<bool>& fixed, const SolverOptions& options) {

@@ -15,6 +15,9 @@ namespace gim {
 // xx, xy, xz, yy, yz, zz.
 using SymmetricBlock = std::array<float, 6>;
 
+// One plane per component.
+using Planes = std::array<std::vector<float>, 3>;
+
 class StencilMatrix {
   public:
     StencilMatrix(uint32_t width, uint32_t height) : width_(width), height_(height) {
@@ -38,10 +41,16 @@ class StencilMatrix {
         for (size_t k = 0; k < 6; ++k) block_[kind][k][i] += factor * block[k];
     }
 
+    // out = matrix * in, each sample an unknown of its own. In parallel.
+    void multiply(const Planes& in, Planes& out) const;
+
     enum Kind : size_t { kDiagonal, kEast, kSouth, kSouthEast, kSouthWest, kKinds };
     const float* plane(Kind kind, size_t k) const { return block_[kind][k].data(); }
 
   private:
+    void accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift, const Planes& in,
+                    Planes& out) const;
+
     uint32_t width_, height_;
     std::array<std::array<std::vector<float>, 6>, kKinds> block_;
 };

@@ -129,6 +129,62 @@ std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sa
     return image;
 }
 
+namespace {
+
+// target[i] -= factor * source[i], the transpose of one half of a lifting step.
+void take_off(float factor, float* __restrict target, const float* __restrict source, size_t count) {
+    for (size_t i = 0; i < count; ++i) target[i] -= factor * source[i];
+}
+
+// The lifting steps of restore_row or restore_columns transposed, so in the opposite order, and so that what was read is
+// written. low(i), high(i): operands of `width` floats.
+template <class Low, class High>
+void transpose_steps(size_t lows, size_t highs, size_t width, const Low& low, const High& high) {
+    for (size_t step = 0; step < 4; step += 2) {
+        for (size_t i = 0; i < highs; ++i) {
+            take_off(Irreversible97::kFactor[step], low(i), high(i), width);
+            take_off(Irreversible97::kFactor[step], low(std::min(i + 1, lows - 1)), high(i), width);
+        }
+        for (size_t i = 0; i < lows; ++i) {
+            take_off(Irreversible97::kFactor[step + 1], high(i == 0 ? 0 : i - 1), low(i), width);
+            take_off(Irreversible97::kFactor[step + 1], high(std::min(i, highs - 1)), low(i), width);
+        }
+    }
+}
+
+}  // namespace
+
+Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side) {
+    Pyramid<float> pyramid;
+    pyramid.columns = pyramid.rows = side;
+    pyramid.levels.resize(static_cast<size_t>(std::countr_zero(side - 1)));
+    for (size_t e = pyramid.levels.size(); e > 0; --e) {
+        const size_t lows = low_count(side), highs = high_count(side), width = size_t{side} * 3;
+        AnalysisLevel<float>& level = pyramid.levels[e - 1];
+        level.horizontal.resize(lows * highs * 3);
+        level.vertical.resize(highs * lows * 3);
+        level.diagonal.resize(highs * highs * 3);
+        std::vector<float> low_image(lows * lows * 3);
+        transpose_steps(
+            lows, highs, width, [&](size_t i) { return image.data() + 2 * i * width; },
+            [&](size_t i) { return image.data() + (2 * i + 1) * width; });
+        for (size_t r = 0; r < side; ++r) {
+            float* row = image.data() + r * width;
+            transpose_steps(
+                lows, highs, 3, [&](size_t i) { return row + 6 * i; }, [&](size_t i) { return row + 6 * i + 3; });
+            float* to_low = (r % 2 == 0 ? low_image : level.vertical).data() + (r / 2) * lows * 3;
+            float* to_high = (r % 2 == 0 ? level.horizontal : level.diagonal).data() + (r / 2) * highs * 3;
+            for (size_t i = 0; i < lows; ++i) std::copy_n(row + 6 * i, 3, to_low + 3 * i);
+            for (size_t i = 0; i < highs; ++i) std::copy_n(row + 6 * i + 3, 3, to_high + 3 * i);
+            if (r % 2 == 0) from_unit_gain(to_low, lows * 3);
+        }
+        image = std::move(low_image);
+        side = low_count(side);
+    }
+    pyramid.base = std::move(image);
+    return pyramid;
+}
+
 template std::vector<int32_t> restore<Reversible53>(const Pyramid<int32_t>&);
 template std::vector<float> restore<Irreversible97>(const Pyramid<float>&);
 template Pyramid<int32_t> analyse<Reversible53>(std::vector<int32_t>, uint32_t, uint32_t, uint32_t);

@@ -46,6 +46,9 @@ Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> 
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid);
 
+// The transpose of restore<Irreversible97> of a square, as a linear map from bands to images.
+Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side);
+
 // The bands of levels[index].
 inline LevelBands bands_of(Pyramid<int32_t>& pyramid, uint32_t index) {
     const uint32_t columns = pyramid.columns_at(index + 1), rows = pyramid.rows_at(index + 1);

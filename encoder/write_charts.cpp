@@ -151,7 +151,7 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
     std::vector<Pyramid<int32_t>> bands;
     for (size_t c = 0; c < charts_.size(); ++c) {
         bands.push_back(header.coding == Coding::kLossless ? lossless_[c]
-                                                           : quantize_bands(lossy_[c], detail_coding_of(header)));
+                                                           : quantize_bands(lossy_[c], detail_coding_of(header)).bands);
         chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }

@@ -91,20 +91,24 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     return writer;
 }
 
-std::vector<uint8_t> GimWriter::write(double quantizer) const {
+Header GimWriter::header(double quantizer) const {
     Header header = header_;
     header.side_exponents = side_exponents_;
     header.level_psnr = level_psnr_;
-    if (header.coding == Coding::kLossy) {
+    if (header.coding == Coding::kLossy)
         header.quantizer = std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
-    }
+    return header;
+}
 
+std::vector<uint8_t> GimWriter::write(double quantizer) const {
+    const Header header = this->header(quantizer);
     // One stream per image and level it has; a level's payload is a table of sizes, left out for a single image, and
     // these.
     std::vector<std::vector<uint8_t>> sizes(header.level_count), streams(header.level_count);
     for (uint32_t i = 0; i < header.image_count(); ++i) {
-        Pyramid<int32_t> bands =
-            header.coding == Coding::kLossless ? lossless_[i] : quantize_bands(lossy_[i], detail_coding_of(header));
+        Pyramid<int32_t> bands = header.coding == Coding::kLossless
+                                     ? lossless_[i]
+                                     : quantize_bands(lossy_[i], detail_coding_of(header)).bands;
         const uint32_t levels = header.level_count_of(i);
         const auto coded = code_bands(bands, levels);
         for (uint32_t k = 0; k < levels; ++k) {

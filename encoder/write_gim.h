@@ -31,6 +31,8 @@ class GimWriter final : public FileWriter {
     static Result<GimWriter> create(std::span<const GeometryImage> images, const CodingParameters& parameters);
 
     std::vector<uint8_t> write(double quantizer) const override;
+    // Of the file for that quantizer, without what depends on its contents. Points into the writer.
+    Header header(double quantizer) const;
 
   private:
     GimWriter() = default;

@@ -53,8 +53,8 @@ struct DetailFrame {
     float scale;       // of the steps
 };
 
-inline constexpr float kMostAreaRatio = 4096;       // scale: 1/8 .. 8
-inline constexpr uint32_t kLeastScaledSide = 9;     // of small images that tell something about area
+inline constexpr float kMostAreaRatio = 4096;        // scale: 1/8 .. 8
+inline constexpr uint32_t kLeastScaledSide = 9;      // of small images that tell something about area
 inline constexpr float kLargestFrameUnit = 0x1p40f;  // greater tangents make no frame
 
 // The small image that details are added to: rows * columns triples in units.

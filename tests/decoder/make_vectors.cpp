@@ -114,7 +114,7 @@ Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
                 values.push_back(static_cast<float>(u / 32 % 2 * 24) - 12.0f);
             }
         }
-        Pyramid<int32_t> bands = quantize_bands(analyse<Irreversible97>(std::move(values), side), {quantizer});
+        Pyramid<int32_t> bands = quantize_bands(analyse<Irreversible97>(std::move(values), side), {quantizer}).bands;
         streams.push_back(code_bands(bands, 1)[0]);
         uint8_t j = 0;
         while ((1u << j) + 1 < side) ++j;
@@ -135,7 +135,7 @@ Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quant
         }
     }
     Pyramid<int32_t> bands =
-        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer});
+        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer}).bands;
     return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1));
 }
 

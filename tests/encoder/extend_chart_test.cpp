@@ -46,7 +46,7 @@ std::vector<typename Wavelet::Sample> masked_slope(const std::vector<uint8_t>& d
 }
 
 size_t coded_size(const Pyramid<float>& pyramid) {
-    Pyramid<int32_t> bands = quantize_bands(pyramid, {6});
+    Pyramid<int32_t> bands = quantize_bands(pyramid, {6}).bands;
     return code_bands(bands, 1)[0].size();
 }
 size_t coded_size(Pyramid<int32_t> pyramid) { return code_bands(pyramid, 1)[0].size(); }

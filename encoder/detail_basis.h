@@ -1,0 +1,49 @@
+// An image in the coordinates that lossy files are coded in: the base and the wavelet details of all bands, each detail
+// along the axes of its frame (format/detail_frame.h).
+//
+// Frames are taken once, from the image that the basis is made for; with them the coordinates are a linear function of
+// the samples, and analysis, synthesis and the synthesis' transpose are mutually consistent linear maps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "encoder/wavelet_analysis.h"
+#include "format/detail_frame.h"
+
+namespace gim {
+
+class DetailBasis {
+  public:
+    // Coordinates: triples, the base first, then band after band from the coarsest level on; x, y, z of the base, along
+    // normal and two tangents of a detail. All in units.
+    using Coordinates = std::vector<float>;
+
+    // image: side * side interleaved triples, units.
+    DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding);
+
+    size_t size() const { return 3 * frames_.size(); }
+    static constexpr size_t kBase = 4 * 3;  // coordinates of the base
+    // Per coordinate: quantizer step, and the L2 norm of its synthesis function.
+    float step(size_t i) const { return i % 3 == 0 || i < kBase ? steps_[i / 3] : steps_[i / 3] * tangential_; }
+    float norm(size_t i) const { return norms_[i / 3]; }
+    // Of a cell at full resolution near the detail, over the coding's cell area.
+    float relative_area(size_t i) const { return areas_[i / 3]; }
+    static bool is_tangential(size_t i) { return i >= kBase && i % 3 != 0; }
+
+    Coordinates analyse(const std::vector<float>& image) const;
+    std::vector<float> synthesize(const Coordinates& coordinates) const;
+    // The transpose of synthesize.
+    Coordinates transposed(std::vector<float> image) const;
+
+  private:
+    enum class Way { kIntoFrames, kOutOfFrames };
+    void turn(Coordinates& coordinates, Way way) const;
+
+    uint32_t side_;
+    float tangential_;
+    std::vector<DetailFrame> frames_;  // per triple
+    std::vector<float> steps_, norms_, areas_;
+};
+
+}  // namespace gim

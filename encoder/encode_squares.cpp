@@ -1,0 +1,68 @@
+#include "encoder/encode_squares.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "encoder/result.h"
+
+namespace gim {
+
+namespace {
+
+// Images that may be fitted again and again.
+struct FittedSquares {
+    SquareImages squares;
+    std::vector<CodedFit> fits;  // one per image, made when needed
+};
+
+Result<bool> make_fits(FittedSquares& state, uint64_t seed) {
+    for (size_t i = state.fits.size(); i < state.squares.images.size(); ++i) {
+        GIM_TRY(fit, CodedFit::create(state.squares.images[i], state.squares.surfaces[i], seed));
+        state.fits.push_back(std::move(fit));
+        state.squares.surfaces[i] = {};  // the fit has its own
+    }
+    return true;
+}
+
+Result<bool> fit_squares(FittedSquares& state, const CodingParameters& parameters, CodedFit::Effort effort,
+                         const EncodeOptions& options, StageClock& clock) {
+    clock.begin(Stage::kFit);
+    GIM_TRY(made, make_fits(state, options.seed));
+    (void)made;
+    GIM_TRY(writer, GimWriter::create(state.squares.images, parameters));
+    const Header header = writer.header(parameters.quantizer);
+    for (size_t i = 0; i < state.fits.size(); ++i)
+        state.squares.images[i].positions = state.fits[i].run(header, effort, clock.progress());
+    clock.begin(Stage::kCode);
+    return true;
+}
+
+}  // namespace
+
+CodingJob code_squares(SquareImages squares, const EncodeOptions& options, StageClock& clock, EncodeReport& report) {
+    report.layout = Layout::kGim;
+    report.images = static_cast<uint32_t>(squares.images.size());
+    for (const GeometryImage& image : squares.images) {
+        if (image.side > report.side) report.node_side = image.sideband.node_side;
+        report.side = std::max(report.side, image.side);
+        report.samples += uint64_t{image.side} * image.side;
+        report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+    }
+    report.width = report.height = report.side;
+
+    const auto state = std::make_shared<FittedSquares>(FittedSquares{std::move(squares), {}});
+    CodingJob job;
+    job.make_writer = [state](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
+        GIM_TRY(writer, GimWriter::create(state->squares.images, parameters));
+        return std::unique_ptr<FileWriter>(new GimWriter(std::move(writer)));
+    };
+    job.make_planes = [state](const PlaneMaker& maker) { return maker.make(state->squares.images); };
+    if (options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
+        job.fit = [state, options, &clock](const CodingParameters& parameters, CodedFit::Effort effort) {
+            return fit_squares(*state, parameters, effort, options, clock);
+        };
+    }
+    return job;
+}
+
+}  // namespace gim

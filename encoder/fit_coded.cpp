@@ -1,0 +1,250 @@
+// A round: linearise the distances (fitter.h) around the samples; minimise over the change y of their coordinates in the
+// codec's own basis (detail_basis.h)
+//
+//     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
+//
+// with E the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, c the
+// coordinates now; then step as far as nothing folds over. The price is the quadratic that touches bits(c) =
+// kBits log2(1 + (c / (kNarrow step))^2) at c_i, times what a bit is worth: at high rates a further bit for each coefficient
+// of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
+//
+// The last rounds hold the tangential details at what the quantizer makes of them.
+#include "encoder/fit_coded.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "encoder/code_bands.h"
+#include "encoder/detail_basis.h"
+#include "encoder/fitter.h"
+#include "encoder/parallel.h"
+#include "encoder/result.h"
+#include "encoder/surface_samples.h"
+
+namespace gim {
+
+namespace {
+
+using Coordinates = DetailBasis::Coordinates;
+
+constexpr int kSearchRounds = 4, kFinalRounds = 8, kHeldRounds = 3;
+constexpr double kDensity = 1.5;         // samples of the reference per face
+constexpr double kBits = 1;              // these two were measured on bunny, horse and feline (spec/rationale.md)
+constexpr double kNarrow = 0.3;          // of a step
+constexpr float kPullsPerSample = 2;     // both surfaces are sampled
+constexpr float kTangentialPull = 0.1f;  // how much distances hold samples along the surface; for preconditioning only
+constexpr float kLeastArea = 0.05f;      // likewise
+constexpr int kMostSteps = 40;
+constexpr double kTolerance = 1e-4;
+
+double dot(const Coordinates& a, const Coordinates& b) {
+    return parallel_sum(a.size(), 0, [&](size_t i) { return double{a[i]} * double{b[i]}; });
+}
+
+template <class Body>
+void for_all(size_t count, const Body& body) {
+    parallel_blocks(count, 16384, 0, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+// The mean over each class, in place; image: interleaved triples.
+void average_glued(const GridGluing& gluing, std::vector<float>& image) {
+    for (const auto& members : gluing.shared) {
+        for (size_t k = 0; k < 3; ++k) {
+            float sum = 0;
+            for (const uint32_t v : members) sum += image[3 * size_t{v} + k];
+            for (const uint32_t v : members) image[3 * size_t{v} + k] = sum / static_cast<float>(members.size());
+        }
+    }
+}
+
+// The energy of one round as a function of coordinates: P, S and the matrix of the distances in a row.
+class CoordinateSystem {
+  public:
+    CoordinateSystem(const FitSystem& system, const DetailBasis& basis, const GridGluing& gluing)
+        : system_(system), basis_(basis), gluing_(gluing) {
+        for (size_t k = 0; k < 3; ++k) {
+            in_[k].resize(system.right.size());
+            out_[k].resize(system.right.size());
+        }
+    }
+
+    std::vector<float> image_of(const Coordinates& y) const {
+        std::vector<float> image = basis_.synthesize(y);
+        average_glued(gluing_, image);
+        return image;
+    }
+    // scale: of the right side.
+    Coordinates right(float scale) const {
+        std::vector<float> image(3 * system_.right.size());
+        for (size_t i = 0; i < image.size(); ++i)
+            image[i] = scale * static_cast<float>(system_.right[i / 3][static_cast<int>(i % 3)]);
+        return coordinates_of(std::move(image));
+    }
+    Coordinates apply(const Coordinates& y) {
+        std::vector<float> image = image_of(y);
+        for_all(system_.right.size(), [&](size_t i) {
+            for (size_t k = 0; k < 3; ++k) in_[k][i] = image[3 * i + k];
+        });
+        system_.matrix.multiply(in_, out_);
+        for_all(system_.right.size(), [&](size_t i) {
+            for (size_t k = 0; k < 3; ++k) image[3 * i + k] = out_[k][i];
+        });
+        return coordinates_of(std::move(image));
+    }
+
+  private:
+    Coordinates coordinates_of(std::vector<float> image) const {
+        average_glued(gluing_, image);
+        return basis_.transposed(std::move(image));
+    }
+
+    const FitSystem& system_;
+    const DetailBasis& basis_;
+    const GridGluing& gluing_;
+    Planes in_, out_;
+};
+
+enum class Free { kAll, kNormals };
+
+// What each coordinate costs, and what it is about scaled by: price + curvature of the distances, inverted; 0 where held.
+struct Prices {
+    std::vector<float> price, inverse;
+
+    Prices(const DetailBasis& basis, const Coordinates& c, float quantizer, Free free)
+        : price(c.size()), inverse(c.size()) {
+        const auto ln2 = static_cast<float>(std::log(2.0));
+        const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;
+        for_all(c.size(), [&](size_t i) {
+            if (free == Free::kNormals && DetailBasis::is_tangential(i)) return;
+            const float narrow = static_cast<float>(kNarrow) * basis.step(i);
+            if (i >= DetailBasis::kBase)
+                price[i] = bit * static_cast<float>(kBits) / ln2 / (c[i] * c[i] + narrow * narrow);
+            const float pull = DetailBasis::is_tangential(i) ? kTangentialPull : 1;
+            const float area = std::max(kLeastArea, basis.relative_area(i));
+            inverse[i] = 1 / (price[i] + basis.norm(i) * basis.norm(i) * kPullsPerSample * area * pull);
+        });
+    }
+};
+
+// Conjugate gradients; c: the coordinates now. Returns their change.
+Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coordinates& c, float scale) {
+    Coordinates y(c.size(), 0.0f), residual = system.right(scale), z(c.size());
+    const auto precondition = [&] { for_all(z.size(), [&](size_t i) { z[i] = prices.inverse[i] * residual[i]; }); };
+    for_all(c.size(),
+            [&](size_t i) { residual[i] = prices.inverse[i] > 0 ? residual[i] - prices.price[i] * c[i] : 0; });
+    precondition();
+    Coordinates direction = z;
+    double rz = dot(residual, z);
+    const double goal = kTolerance * rz;
+    for (int k = 0; k < kMostSteps && rz > goal; ++k) {
+        Coordinates image = system.apply(direction);
+        for_all(image.size(),
+                [&](size_t i) { image[i] = prices.inverse[i] > 0 ? image[i] + prices.price[i] * direction[i] : 0; });
+        const double curvature = dot(direction, image);
+        if (!(curvature > 0)) break;
+        const auto alpha = static_cast<float>(rz / curvature);
+        for_all(y.size(), [&](size_t i) {
+            y[i] += alpha * direction[i];
+            residual[i] -= alpha * image[i];
+        });
+        precondition();
+        const double before = rz;
+        rz = dot(residual, z);
+        const auto beta = static_cast<float>(rz / before);
+        for_all(y.size(), [&](size_t i) { direction[i] = z[i] + beta * direction[i]; });
+    }
+    return y;
+}
+
+}  // namespace
+
+struct CodedFit::Impl {
+    Impl(const GeometryImage& start, GridGluing glued, const Mesh& mesh, uint64_t first_seed)
+        : gluing(std::move(glued)),
+          frame(mesh),
+          reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
+          fitter(start.positions, reference, gluing, frame, {}),
+          side(start.side),
+          seed(first_seed) {}
+
+    GridGluing gluing;
+    FitFrame frame;
+    FitReference reference;
+    Fitter fitter;
+    uint32_t side;
+    uint64_t seed;
+    uint64_t rounds = 0;
+
+    std::vector<float> units(const Header& header) const {
+        std::vector<float> image(3 * fitter.positions().size());
+        for (size_t i = 0; i < fitter.positions().size(); ++i) {
+            const Vec3 position = frame.out_of(fitter.positions()[i]);
+            for (size_t k = 0; k < 3; ++k) {
+                const double from_origin = position[static_cast<int>(k)] - double{header.origin[k]};
+                image[3 * i + k] = static_cast<float>(from_origin / double{header.step});
+            }
+        }
+        return image;
+    }
+
+    void place_units(const std::vector<float>& image, const Header& header) {
+        std::vector<Vec3> positions(image.size() / 3);
+        for (size_t i = 0; i < image.size(); ++i) {
+            positions[i / 3][static_cast<int>(i % 3)] =
+                double{image[i]} * double{header.step} + double{header.origin[i % 3]};
+        }
+        fitter.place(frame.into(positions));
+    }
+
+    void round(const Header& header, Free free) {
+        const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
+        const DetailCoding coding = detail_coding_of(header);
+        const std::vector<float> image = units(header);
+        const DetailBasis basis(image, side, coding);
+        const Coordinates c = basis.analyse(image);
+        const auto unit = static_cast<float>(double{header.step} * frame.scale);  // in the frame
+        CoordinateSystem coordinates(system, basis, gluing);
+        const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
+        const std::vector<float> change = coordinates.image_of(y);
+        std::vector<Vec3> step(fitter.positions().size());
+        for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
+        fitter.take_step(step, true);
+    }
+
+    // Samples go where a decoder would put them.
+    void quantize(const Header& header) {
+        std::vector<float> image =
+            quantize_bands(analyse<Irreversible97>(units(header), side), detail_coding_of(header)).image;
+        average_glued(gluing, image);
+        place_units(image, header);
+    }
+};
+
+CodedFit::CodedFit(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CodedFit::~CodedFit() = default;
+CodedFit::CodedFit(CodedFit&&) noexcept = default;
+CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
+
+Result<CodedFit> CodedFit::create(const GeometryImage& start, const Mesh& reference, uint64_t seed) {
+    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+    return CodedFit(std::make_unique<Impl>(start, std::move(gluing), reference, seed));
+}
+
+std::vector<Vec3> CodedFit::run(const Header& header, Effort effort, const Progress& progress) {
+    const int rounds = effort == Effort::kFinal ? kFinalRounds : kSearchRounds;
+    const int held_rounds = effort == Effort::kFinal ? kHeldRounds : 1;
+    for (int k = 0; k < rounds + held_rounds; ++k) {
+        if (progress) progress(Stage::kFit, double(k) / (rounds + held_rounds));
+        if (k >= rounds) impl_->quantize(header);
+        impl_->round(header, k < rounds ? Free::kAll : Free::kNormals);
+    }
+    std::vector<Vec3> positions;
+    for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
+    return positions;
+}
+
+}  // namespace gim
