@@ -6,7 +6,7 @@
 #include <span>
 
 #include "decoder/arena.h"
-#include "decoder/fuse.h"
+#include "format/fuse.h"
 #include "decoder/pyramid_decoder.h"
 #include "format/container.h"
 #include "format/seam.h"

@@ -9,7 +9,7 @@ namespace gim {
 namespace {
 
 // Dead zone. A magnitude is rounded up from this fraction on ...
-constexpr float kRoundUpFrom = 0.55f;
+constexpr float kRoundUpFrom = 0.55f, kTangentialRoundUpFrom = 0.6f;
 // ... but a single step is left out up to this much more where the neighbours are small, for there it costs most bits.
 constexpr float kLonely = 0.2f;
 constexpr float kNotLonelyFrom = 0.5f;  // mean magnitude of the neighbours, in steps
@@ -43,17 +43,18 @@ float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32
 }
 
 // band: in steps.
-std::vector<int32_t> round_band(const RealBand& band) {
+std::vector<int32_t> round_band(const RealBand& band, bool in_frames) {
     std::vector<int32_t> out(band.values.size());
     for (uint32_t row = 0, i = 0; row < band.rows; ++row) {
         for (uint32_t column = 0; column < band.columns; ++column) {
             for (uint32_t k = 0; k < 3; ++k, ++i) {
                 const float steps = band.magnitude(row, column, k);
-                if (steps < kRoundUpFrom) continue;
-                float magnitude = std::floor(steps + (1.0f - kRoundUpFrom));
-                if (magnitude == 1 && steps < kRoundUpFrom + kLonely) {
+                const float from = in_frames && k > 0 ? kTangentialRoundUpFrom : kRoundUpFrom;
+                if (steps < from) continue;
+                float magnitude = std::floor(steps + (1.0f - from));
+                if (magnitude == 1 && steps < from + kLonely) {
                     const float lonely = 1.0f - mean_neighbour(band, row, column, k) / kNotLonelyFrom;
-                    if (steps < kRoundUpFrom + kLonely * lonely) magnitude = 0;
+                    if (steps < from + kLonely * lonely) magnitude = 0;
                 }
                 const auto q = static_cast<int32_t>(std::min(magnitude, kMaxMagnitude));
                 out[i] = band.values[i] < 0 ? -q : q;
@@ -82,7 +83,7 @@ QuantizedBand quantize(const RealBand& band, const FrameField& frames, const Det
     }
     for (size_t i = 0; i < local.size(); ++i) local[i] /= step[i];
 
-    QuantizedBand result{round_band({local, band.rows, band.columns}), {}};
+    QuantizedBand result{round_band({local, band.rows, band.columns}, steps.in_frames), {}};
     result.details.resize(local.size());
     for (size_t i = 0; i < local.size(); ++i) result.details[i] = dequantize(result.integers[i], step[i]);
     for (size_t i = 0; i < frame.size(); ++i) {

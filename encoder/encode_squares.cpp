@@ -13,6 +13,12 @@ namespace {
 struct FittedSquares {
     SquareImages squares;
     std::vector<CodedFit> fits;  // one per image, made when needed
+    std::optional<Header> units;  // of the first fit: what is fitted to a quantizer must meet the same steps again
+
+    Result<GimWriter> writer(CodingParameters parameters) const {
+        parameters.units = units;
+        return GimWriter::create(squares.images, parameters);
+    }
 };
 
 Result<bool> make_fits(FittedSquares& state, uint64_t seed) {
@@ -29,8 +35,9 @@ Result<bool> fit_squares(FittedSquares& state, const CodingParameters& parameter
     clock.begin(Stage::kFit);
     GIM_TRY(made, make_fits(state, options.seed));
     (void)made;
-    GIM_TRY(writer, GimWriter::create(state.squares.images, parameters));
+    GIM_TRY(writer, state.writer(parameters));
     const Header header = writer.header(parameters.quantizer);
+    if (!state.units) state.units = header;
     for (size_t i = 0; i < state.fits.size(); ++i)
         state.squares.images[i].positions = state.fits[i].run(header, effort, clock.progress());
     clock.begin(Stage::kCode);
@@ -50,10 +57,10 @@ CodingJob code_squares(SquareImages squares, const EncodeOptions& options, Stage
     }
     report.width = report.height = report.side;
 
-    const auto state = std::make_shared<FittedSquares>(FittedSquares{std::move(squares), {}});
+    const auto state = std::make_shared<FittedSquares>(FittedSquares{std::move(squares), {}, {}});
     CodingJob job;
     job.make_writer = [state](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
-        GIM_TRY(writer, GimWriter::create(state->squares.images, parameters));
+        GIM_TRY(writer, state->writer(parameters));
         return std::unique_ptr<FileWriter>(new GimWriter(std::move(writer)));
     };
     job.make_planes = [state](const PlaneMaker& maker) { return maker.make(state->squares.images); };

@@ -22,6 +22,9 @@
 #include "encoder/parallel.h"
 #include "encoder/result.h"
 #include "encoder/surface_samples.h"
+#include "format/fuse.h"
+#include "format/ring.h"
+#include "format/seam.h"
 
 namespace gim {
 
@@ -160,6 +163,14 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
+// Per ring sample; the image's sideband is in order.
+std::vector<uint32_t> classes_of(const GeometryImage& image) {
+    std::vector<uint32_t> classes(ring_length(image.side));
+    SeamTable seams;
+    if (build_seam_table(image.sideband, &seams) == Status::kOk) gim::ring_classes(seams, image.side, classes);
+    return classes;
+}
+
 }  // namespace
 
 struct CodedFit::Impl {
@@ -169,6 +180,7 @@ struct CodedFit::Impl {
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
           fitter(start.positions, reference, gluing, frame, {}),
           side(start.side),
+          ring_classes(classes_of(start)),
           seed(first_seed) {}
 
     GridGluing gluing;
@@ -176,6 +188,7 @@ struct CodedFit::Impl {
     FitReference reference;
     Fitter fitter;
     uint32_t side;
+    std::vector<uint32_t> ring_classes;
     uint64_t seed;
     uint64_t rounds = 0;
 
@@ -219,7 +232,12 @@ struct CodedFit::Impl {
     void quantize(const Header& header) {
         std::vector<float> image =
             quantize_bands(analyse<Irreversible97>(units(header), side), detail_coding_of(header)).image;
-        average_glued(gluing, image);
+        const size_t ring = ring_classes.size();
+        const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
+        std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
+        std::vector<uint32_t> first(ring), members(ring);
+        fuse(side, ring_classes.data(), classes, image.data(),
+             {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
         place_units(image, header);
     }
 };

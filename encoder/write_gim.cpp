@@ -73,7 +73,12 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     std::vector<std::span<const Vec3>> positions;
     for (const GeometryImage& image : images) positions.push_back(image.positions);
     set_quantizer(positions, parameters.bits, &header);
-    if (header.coding == Coding::kLossy) {
+    if (header.coding == Coding::kLossy && parameters.units) {
+        header.origin = parameters.units->origin;
+        header.step = parameters.units->step;
+        header.tangential = parameters.units->tangential;
+        header.cell_area = parameters.units->cell_area;
+    } else if (header.coding == Coding::kLossy) {
         CellArea area;
         for (const GeometryImage& image : images) area.add(image.positions, {}, image.side, image.side);
         area.set_details(&header);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <optional>
 #include <vector>
 
 #include "encoder/assemble_file.h"
@@ -21,6 +22,7 @@ struct CodingParameters {
     uint32_t base_side = 17;         // side of the coarsest stored level; smaller ones cost about 7 bytes each
     std::vector<CodedPlane> planes;  // stored behind the levels
     std::string text;                // goes into a META chunk unless empty; UTF-8
+    std::optional<Header> units;     // lossy: origin, step and cell area are this header's instead of the images' own
     bool level_psnr = false;         // leaves room in the header for set_level_psnr
 };
 

@@ -1,4 +1,4 @@
-#include "decoder/fuse.h"
+#include "format/fuse.h"
 
 #include <algorithm>
 #include <utility>
