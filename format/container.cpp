@@ -145,7 +145,8 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     if (!reader.read_f32(&header->step) || !in_range(header->step, kMinStep, kMaxStep)) return Status::kMalformed;
     if (header->coding == Coding::kLossy &&
         (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer) ||
-         !reader.read_u8(&header->tangential) || !reader.read_u8(&header->cell_area)))
+         !reader.read_u8(&header->tangential) || !reader.read_u8(&header->cell_area) ||
+         (header->tangential == 0 && header->cell_area != 0)))
         return Status::kMalformed;
     if (kind & kPsnrFlag) {
         const size_t psnr_at = reader.position();

@@ -263,6 +263,20 @@ void write_valid(Writer& out) {
         out.valid("schema-33-lossy-" + std::to_string(genus), encode({hill(33, s, 6, 14)}, lossy(12, 17, 5)));
     }
 
+    // The same integers in other frames: none, without areas, and with steps as far apart as they get.
+    const Bytes framed = encode({hill(33, folded_sides(), 5, 3)}, lossy(12, 9, 4));
+    const auto with_frames = [&](uint8_t tangential, uint8_t cell_area) {
+        return with_parts(framed, [&](Parts& p) { p.header.tangential = tangential, p.header.cell_area = cell_area; });
+    };
+    out.valid("frames-none", with_frames(0, 0));
+    out.valid("frames-without-area", with_frames(24, 0));
+    out.valid("frames-wide-steps", with_frames(255, 255));
+    out.valid("frames-narrow-steps", with_frames(1, 1));
+    // A surface that is a line has no normals.
+    GeometryImage line = hill(33, open_square(), 64, 18);
+    for (Vec3& p : line.positions) p.y() = p.z() = 0;
+    out.valid("frames-of-a-line", encode({line}, lossy(12, 9, 4)));
+
     CodingParameters measured = lossy(12, 5, 6);
     measured.level_psnr = true;
     out.valid("level-psnr",
@@ -365,6 +379,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     header("malformed.step-infinite", [](Parts& p) { p.header.step = std::numeric_limits<float>::infinity(); });
     header("malformed.quantizer-zero", [](Parts& p) { p.header.quantizer = 0; });
     header("malformed.quantizer-nan", [](Parts& p) { p.header.quantizer = std::numeric_limits<float>::quiet_NaN(); });
+    header("malformed.cell-area-without-frames", [](Parts& p) { p.header.tangential = 0; });
     header("malformed.no-seams", [](Parts& p) { remove_chunk(&p, 0); });
     header("malformed.seams-twice", [](Parts& p) { insert_chunk(&p, 1, 0, false, p.payloads[0]); });
     header("malformed.seams-optional", [](Parts& p) { p.chunks[0].optional = true; });

@@ -178,6 +178,65 @@ TEST(Encode, ByteBudgetIsKeptAndUsed) {
     EXPECT_FALSE(encode(corpus::torus(60, 30, 1, 0.4), options).ok());
 }
 
+// Samples are fitted to the codec, and the rate search goes around that fit.
+EncodeOptions coded_options() {
+    EncodeOptions options = small_options();
+    options.fit = FitStrength::kAuto;
+    options.density = true;
+    return options;
+}
+TriangleMesh bumpy_sphere() { return corpus::roughened(corpus::sphere(20), 0.01, 4); }
+
+TEST(Encode, PsnrTargetIsMetByFilesFittedToTheCodec) {
+    const TriangleMesh mesh = bumpy_sphere();
+    EncodeOptions options = coded_options();
+    for (const double target : {45.0, 55.0}) {
+        options.rate = {RateTarget::Kind::kPsnr, target};
+        const auto encoded = encode(mesh, options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        const auto comparison = compare(mesh, as_input(decode_surface(encoded.value().bytes, 0).value()), {});
+        EXPECT_GE(comparison.value().psnr, target);
+        EXPECT_LE(comparison.value().psnr, target + 0.3);
+        EXPECT_NEAR(comparison.value().psnr, encoded.value().report.error.psnr, 1e-9);
+        expect_topology_at_every_level(encoded.value(), "bumpy sphere");
+    }
+}
+
+TEST(Encode, ByteBudgetIsKeptAndUsedByFilesFittedToTheCodec) {
+    const TriangleMesh mesh = bumpy_sphere();
+    EncodeOptions options = coded_options();
+    for (const double budget : {500.0, 2000.0}) {
+        options.rate = {RateTarget::Kind::kBytes, budget};
+        const auto encoded = encode(mesh, options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_LE(static_cast<double>(encoded.value().bytes.size()), budget);
+        EXPECT_GE(static_cast<double>(encoded.value().bytes.size()), 0.98 * budget);
+    }
+}
+
+TEST(Encode, FittingToTheCodecMakesFilesSmallerThanTheStiffFit) {
+    const TriangleMesh mesh = bumpy_sphere();
+    EncodeOptions options = coded_options();
+    options.rate = {RateTarget::Kind::kPsnr, 55};
+    const auto coded = encode(mesh, options);
+    options.fit = FitStrength::kStiff;
+    const auto stiff = encode(mesh, options);
+    ASSERT_TRUE(coded.ok() && stiff.ok());
+    EXPECT_LT(double(coded.value().bytes.size()), 0.9 * double(stiff.value().bytes.size()));
+}
+
+TEST(Encode, SameBytesAtAnyThreadCountWhereSamplesAreFittedToTheCodec) {
+    EncodeOptions options = coded_options();
+    options.rate = {RateTarget::Kind::kQuality, 60};
+    const TriangleMesh mesh = bumpy_sphere();
+    options.threads = 1;
+    const auto one = encode(mesh, options);
+    options.threads = 2;
+    const auto two = encode(mesh, options);
+    ASSERT_TRUE(one.ok() && two.ok());
+    EXPECT_EQ(one.value().bytes, two.value().bytes);
+}
+
 TEST(Encode, SameBytesAtAnyThreadCount) {
     EncodeOptions options = small_options();
     options.fit = FitStrength::kStiff;

@@ -73,14 +73,67 @@ TEST(Container, HandWrittenBytesParse) {
     EXPECT_FALSE(walk.next(&c, &offset));
 }
 
+// Lossy, quantizer 1.5, and what the next two bytes say; a file of one level, whose index may be cut short.
+std::vector<uint8_t> lossy_bytes(std::vector<uint8_t> tangential_and_area) {
+    std::vector<uint8_t> bytes = {0x89, 'G', 'I', 'M',  0x0D, 0x0A, 0x1A, 1,   0, 0x04, 12, 1, 1,
+                                  2,    0,   0,   0,    0,    0,    0,    0,   0, 0,    0,  0, 0,  // origin 0
+                                  0,    0,   0,   0x3F, 0,    0,    0xC0, 0x3F};  // step 0.5, quantizer
+    for (const uint8_t byte : tangential_and_area) bytes.push_back(byte);
+    for (const int byte : {0x00, 1, 0xAA, 0xBB, 0x04, 2, 0xCC, 0xDD})
+        bytes.push_back(static_cast<uint8_t>(byte));  // SEAM, LEVL
+    bytes[8] = static_cast<uint8_t>(bytes.size() + 4);
+    append_u32(crc32(bytes), &bytes);
+    return bytes;
+}
+
+TEST(Container, LossyFilesSayHowDetailsAreQuantized) {
+    Header h;
+    ASSERT_EQ(parse(lossy_bytes({24, 75}), &h), Status::kOk);
+    EXPECT_EQ(h.coding, Coding::kLossy);
+    EXPECT_EQ(h.quantizer, 1.5f);
+    EXPECT_EQ(h.tangential, 24);
+    EXPECT_EQ(h.cell_area, 75);
+    EXPECT_EQ(h.chunk_count, 2u);
+    EXPECT_EQ(parse(lossy_bytes({255, 255}), &h), Status::kOk);
+    EXPECT_EQ(parse(lossy_bytes({1, 0}), &h), Status::kOk);
+    EXPECT_EQ(parse(lossy_bytes({0, 0}), &h), Status::kOk);
+}
+
+TEST(Container, AnAreaWithoutFramesIsMalformed) {
+    Header h;
+    EXPECT_EQ(parse(lossy_bytes({0, 1}), &h), Status::kMalformed);
+    EXPECT_EQ(parse(lossy_bytes({0, 255}), &h), Status::kMalformed);
+}
+
+TEST(Container, LossyFilesWithoutTheTwoBytesAreMalformed) {
+    Header h;
+    EXPECT_EQ(parse(lossy_bytes({}), &h), Status::kMalformed);
+    EXPECT_EQ(parse(lossy_bytes({24}), &h), Status::kMalformed);
+}
+
+TEST(Container, CellAreasAreFourToAnOctave) {
+    EXPECT_EQ(cell_area_of(0), 0.0f);
+    EXPECT_EQ(cell_area_of(1), 5 * 0x1p-20f);
+    EXPECT_EQ(cell_area_of(4), 0x1p-17f);
+    EXPECT_EQ(cell_area_of(80), 4.0f);
+    EXPECT_EQ(cell_area_of(83), 7.0f);
+    EXPECT_EQ(cell_area_of(255), 7 * 0x1p43f);
+    for (int code = 1; code < 256; ++code)
+        EXPECT_GT(cell_area_of(static_cast<uint8_t>(code)), cell_area_of(static_cast<uint8_t>(code - 1))) << code;
+}
+
 TEST(Container, SerializedHeadersParseBack) {
     Header h = small_header(), back;
     h.coding = Coding::kLossy;
     h.quantizer = 3.25f;
+    h.tangential = 24;
+    h.cell_area = 75;
     const auto bytes = serialize_header(h, kChunks);
     ASSERT_EQ(parse(bytes, &back), Status::kOk);
     EXPECT_EQ(back.index_size, bytes.size());
     EXPECT_EQ(back.quantizer, 3.25f);
+    EXPECT_EQ(back.tangential, 24);
+    EXPECT_EQ(back.cell_area, 75);
     EXPECT_EQ(back.origin, h.origin);
     EXPECT_EQ(back.level_count, 2u);
     EXPECT_EQ(back.sample_count, 33u * 33u);
