@@ -6,9 +6,9 @@
 #include <span>
 
 #include "decoder/arena.h"
-#include "format/fuse.h"
 #include "decoder/pyramid_decoder.h"
 #include "format/container.h"
+#include "format/fuse.h"
 #include "format/seam.h"
 
 namespace gim {

@@ -12,7 +12,7 @@ namespace {
 // Images that may be fitted again and again.
 struct FittedSquares {
     SquareImages squares;
-    std::vector<CodedFit> fits;  // one per image, made when needed
+    std::vector<CodedFit> fits;   // one per image, made when needed
     std::optional<Header> units;  // of the first fit: what is fitted to a quantizer must meet the same steps again
 
     Result<GimWriter> writer(CodingParameters parameters) const {

@@ -230,8 +230,10 @@ struct CodedFit::Impl {
 
     // Samples go where a decoder would put them.
     void quantize(const Header& header) {
-        std::vector<float> image =
-            quantize_bands(analyse<Irreversible97>(units(header), side), detail_coding_of(header)).image;
+        Pyramid<float> bands = analyse<Irreversible97>(units(header), side);
+        subtract_middle(&bands, header.bits);
+        std::vector<float> image = quantize_bands(bands, detail_coding_of(header)).image;
+        for (float& x : image) x += static_cast<float>(1 << (header.bits - 1));
         const size_t ring = ring_classes.size();
         const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
         std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);

@@ -135,7 +135,8 @@ Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quant
         }
     }
     Pyramid<int32_t> bands =
-        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer}).bands;
+        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer})
+            .bands;
     return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1));
 }
 

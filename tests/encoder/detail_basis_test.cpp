@@ -66,9 +66,10 @@ TEST(DetailBasis, NormsAreThoseOfTheSynthesisFunctions) {
     // The finest bands come last: horizontal 33 x 32, vertical 32 x 33, diagonal 32 x 32.
     const size_t diagonal = basis.size() - 3 * 32 * 32, vertical = diagonal - 3 * 32 * 33,
                  horizontal = vertical - 3 * 33 * 32;
-    for (const size_t first : {horizontal, vertical, diagonal}) {
+    for (const auto& [first, columns] :
+         {std::pair{horizontal, 32u}, std::pair{vertical, 33u}, std::pair{diagonal, 32u}}) {
         for (size_t k = 0; k < 3; ++k) {
-            const size_t i = first + 3 * (16 * 33 + 15) + k;
+            const size_t i = first + 3 * (16 * columns + 15) + k;
             std::vector<float> c(basis.size());
             c[i] = 1;
             const std::vector<float> function = basis.synthesize(c);

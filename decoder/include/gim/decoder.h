@@ -74,7 +74,7 @@ typedef struct gim_info {
     uint64_t file_size;    /* of the whole file, as the index tells */
     float origin[3];       /* position = origin + step * integer (lossless) */
     float step;            /* object units per quantization step, > 0 */
-    float quantizer;       /* lossy: quantizer step of a coefficient of unit norm, in quantization steps; else 0 */
+    float quantizer;       /* lossy: step across the surface, unit norm, mean density, in quantization steps; else 0 */
     uint32_t index_size;   /* bytes of header and index; a prefix of this length suffices for gim_read_info */
     float level_psnr[GIM_MAX_LEVELS]; /* dB, as the encoder measured each level against its input, rounded down to half
                                          decibels; level 0 first; 0: not told */
