@@ -68,6 +68,9 @@ CodingJob code_squares(SquareImages squares, const EncodeOptions& options, Stage
         job.fit = [state, options, &clock](const CodingParameters& parameters, CodedFit::Effort effort) {
             return fit_squares(*state, parameters, effort, options, clock);
         };
+        job.restart_fit = [state] {
+            for (CodedFit& fit : state->fits) fit.restart();
+        };
     }
     return job;
 }

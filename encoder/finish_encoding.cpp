@@ -42,14 +42,22 @@ class RateSearch {
             GIM_TRY(nearer, approach(quantizer));
             quantizer = nearer;
         }
+        std::vector<uint8_t> met;  // the target, by the fit before
         for (int again = 0;; ++again) {
             GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kFinal));
             (void)fitted;
             auto bytes = search(quantizer);
+            if (!bytes.ok() && !met.empty()) return met;
             if (target_.kind == RateTarget::Kind::kQuality || again == kMostRefits) return bytes;
-            // A fit to too coarse a quantizer may not reach the target.
-            const double found = bytes.ok() ? quantizer_of(bytes.value()) : quantizer / 2;
+            if (!bytes.ok()) {
+                // Samples that were fitted to too coarse a quantizer reach no target.
+                job_.restart_fit();
+                quantizer = clamped_quantizer(quantizer / 2);
+                continue;
+            }
+            const double found = quantizer_of(bytes.value());
             if (std::abs(std::log2(found / quantizer)) < kNearEnough) return bytes;
+            met = std::move(bytes.value());
             quantizer = found;
         }
     }

@@ -27,6 +27,8 @@ struct CodingJob {
     std::function<Result<std::vector<CodedPlane>>(const PlaneMaker&)> make_planes;
     // Fits what is coded to the quantizer of the parameters; writers made afterwards code the result. Empty: no such fit.
     std::function<Result<bool>(const CodingParameters&, CodedFit::Effort)> fit = nullptr;
+    // The next fit begins from the start. Not empty where fit is not.
+    std::function<void()> restart_fit = nullptr;
 };
 
 // Codes to the target of the options, judging the decoded surface against `reference`, and completes the report.

@@ -179,6 +179,7 @@ struct CodedFit::Impl {
           frame(mesh),
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
           fitter(start.positions, reference, gluing, frame, {}),
+          first_positions(fitter.positions()),
           side(start.side),
           ring_classes(classes_of(start)),
           seed(first_seed) {}
@@ -187,6 +188,7 @@ struct CodedFit::Impl {
     FitFrame frame;
     FitReference reference;
     Fitter fitter;
+    std::vector<Vec3> first_positions;  // in the frame
     uint32_t side;
     std::vector<uint32_t> ring_classes;
     uint64_t seed;
@@ -253,6 +255,8 @@ Result<CodedFit> CodedFit::create(const GeometryImage& start, const Mesh& refere
     GIM_TRY(gluing, glue_ring(start.sideband, start.side));
     return CodedFit(std::make_unique<Impl>(start, std::move(gluing), reference, seed));
 }
+
+void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
 std::vector<Vec3> CodedFit::run(const Header& header, Effort effort, const Progress& progress) {
     const int rounds = effort == Effort::kFinal ? kFinalRounds : kSearchRounds;

@@ -33,6 +33,8 @@ class CodedFit {
     // tangential steps and cell area. Returns the samples, equal where glued. The same for any number of threads. Cost: of
     // 257 x 257 samples about 0.3 s a round on two cores, 4 or 11 rounds.
     std::vector<Vec3> run(const Header& header, Effort effort, const Progress& progress = {});
+    // The next call goes on from the start again: samples that a coarse quantizer has heaped up do not come apart.
+    void restart();
 
   private:
     struct Impl;

@@ -107,8 +107,9 @@ TEST(WriteGim, FinerQuantizersComeCloserAndTakeMore) {
                 error += std::pow(double{d.positions[i * 3 + size_t(k)]} - image.positions[i][k], 2);
         EXPECT_LT(error, last_error);
         EXPECT_GT(bytes.size(), last_size);
-        // The step of a coefficient of unit norm bounds the error of each.
-        EXPECT_LT(std::sqrt(error / double(image.positions.size())), quantizer * double{d.info.step});
+        // The steps of coefficients of unit norm, one along the normal and two along the surface, bound the error of each.
+        const double steps = quantizer * std::sqrt((1 + 2 * kTangentialRatio * kTangentialRatio) / 3);
+        EXPECT_LT(std::sqrt(error / double(image.positions.size())), steps * double{d.info.step});
         last_error = error;
         last_size = bytes.size();
     }
