@@ -50,7 +50,7 @@ float determinant_area(const DetailFrame& frame, float cell_area) {
 }  // namespace
 
 DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding)
-    : side_(side), tangential_(coding.tangential) {
+    : side_(side) {
     const auto steps = static_cast<uint32_t>(std::countr_zero(side - 1));
     std::vector<std::vector<float>> images(steps + 1);  // by exponent
     images[steps] = image;
@@ -59,6 +59,7 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
 
     frames_.assign(4, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
     steps_.assign(4, low_band_step(coding.quantizer, steps));
+    tangential_steps_ = steps_;  // of no use: a base has no tangents
     norms_.assign(4, kBandNorms[steps - 1].low);
     areas_.assign(4, 1);
     for (uint32_t e = 1; e <= steps; ++e) {
@@ -71,7 +72,10 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
             for (uint32_t row = 0; row < rows; ++row) {
                 for (uint32_t column = 0; column < columns; ++column) {
                     frames_.push_back(field.at(orientation, row, column));
-                    steps_.push_back(detail_steps.of(orientation) * frames_.back().scale);
+                    float step[3];
+                    steps_in(frames_.back(), detail_steps, orientation, step);
+                    steps_.push_back(step[0]);
+                    tangential_steps_.push_back(step[1]);
                     areas_.push_back(determinant_area(frames_.back(), detail_steps.cell_area));
                     norms_.push_back(norm);
                 }

@@ -25,7 +25,7 @@ class DetailBasis {
     size_t size() const { return 3 * frames_.size(); }
     static constexpr size_t kBase = 4 * 3;  // coordinates of the base
     // Per coordinate: quantizer step, and the L2 norm of its synthesis function.
-    float step(size_t i) const { return i % 3 == 0 || i < kBase ? steps_[i / 3] : steps_[i / 3] * tangential_; }
+    float step(size_t i) const { return is_tangential(i) ? tangential_steps_[i / 3] : steps_[i / 3]; }
     float norm(size_t i) const { return norms_[i / 3]; }
     // Of a cell at full resolution near the detail, over the coding's cell area.
     float relative_area(size_t i) const { return areas_[i / 3]; }
@@ -41,9 +41,8 @@ class DetailBasis {
     void turn(Coordinates& coordinates, Way way) const;
 
     uint32_t side_;
-    float tangential_;
     std::vector<DetailFrame> frames_;  // per triple
-    std::vector<float> steps_, norms_, areas_;
+    std::vector<float> steps_, tangential_steps_, norms_, areas_;
 };
 
 }  // namespace gim

@@ -77,7 +77,9 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     }
     if (options.density) {
         ParametrizeOptions weighted;
-        weighted.importance = importance_from_error(disk, uv, sample_surface(boundary, uv, options.side), {});
+        const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
+        weighted.importance = importance_from_error(disk, uv, sample_surface(boundary, uv, options.side),
+                                                    lossless ? DensityOptions{} : kCodedDensity);
         GIM_TRY(adapted, parametrize(disk, boundary.sides, border, weighted, clock.progress()));
         uv = std::move(adapted);
         if (observer) observer(make_snapshot("map-density", "denser where it errs", boundary.opened, uv));

@@ -50,7 +50,7 @@ inline DetailCoding detail_coding_of(const Header& header) {
 
 struct DetailFrame {
     float axis[3][3];  // unit normal, unit tangent along the row, unit tangent across; right-handed
-    float scale;       // of the steps
+    float scale;       // of the normal step
 };
 
 inline constexpr float kMostAreaRatio = 4096;        // scale: 1/8 .. 8
@@ -153,7 +153,7 @@ class FrameField {
 // Steps of the components of a detail.
 inline void steps_in(const DetailFrame& frame, const DetailSteps& steps, Orientation orientation, float* step) {
     step[0] = steps.of(orientation) * frame.scale;
-    step[1] = step[2] = step[0] * steps.tangential;
+    step[1] = step[2] = steps.of(orientation) * steps.tangential;
 }
 
 // Components along the axes -> x, y, z, and back.

@@ -94,7 +94,7 @@ TEST(Synthesis, FramesTurnDetailsAndScaleTheirSteps) {
     set(framed.level.vertical, 5, 9, {0, 7, -1});
     set(plain.level.vertical, 5, 9, {7, -1, 0});
     const std::vector<float> c = synthesized(33, 33, low, framed, steps),
-                             d = synthesized(33, 33, low, plain, {20, 1, false, 1, 0});
+                             d = synthesized(33, 33, low, plain, {10, 1, false, 1, 0});
     for (size_t i = 0; i < c.size(); ++i) EXPECT_NEAR(c[i], d[i], 1e-4f) << i;
 }
 

@@ -244,14 +244,14 @@ TEST(DetailFrame, WhatGoesIntoAFrameComesOutAgain) {
     }
 }
 
-TEST(DetailFrame, TangentialStepsAreMultiplesOfNormalOnes) {
+TEST(DetailFrame, OnlyNormalStepsFollowTheArea) {
     const DetailFrame frame = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, 2};
     const DetailSteps steps{5, 3, true, 1.5f, 0};
     float step[3];
     steps_in(frame, steps, Orientation::kHorizontal, step);
     EXPECT_EQ(step[0], 10.0f);
-    EXPECT_EQ(step[1], 15.0f);
-    EXPECT_EQ(step[2], 15.0f);
+    EXPECT_EQ(step[1], 7.5f);
+    EXPECT_EQ(step[2], 7.5f);
     steps_in(frame, steps, Orientation::kDiagonal, step);
     EXPECT_EQ(step[0], 6.0f);
 }
