@@ -279,7 +279,7 @@ bool decode_chart(const Header& header, const ChartLevelShape& shape, const Deco
 template <class Wavelet>
 Status decode_levels(const Header& header, std::span<const uint8_t> file, const ChartLevelShape& shape,
                      const ChartWorkspace& ws) {
-    new (ws.pyramid.models) BandModels();
+    new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
     new (ws.border_models) BorderModels();
     for (uint32_t l = header.level_count; l-- > shape.level;) {
         Chunk chunk;

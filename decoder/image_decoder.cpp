@@ -37,7 +37,7 @@ Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint3
     const PyramidShape shape =
         square_shape(header.side_exponents[image], level, detail_coding_of(header), 1 << (header.bits - 1));
     PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
-    new (ws.pyramid.models) BandModels();
+    new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
     for (uint32_t l = header.level_count_of(image); l-- > level;) {
         Chunk chunk;
         uint64_t offset = 0;

@@ -85,7 +85,7 @@ void finish_color(float* c) {
 
 Status decode_plane(const PlaneLevel& plane, uint32_t kind, const PlaneWorkspace& ws, float* values) {
     PyramidDecoder<Irreversible97> decoder(plane.shape, ws.pyramid);
-    new (ws.pyramid.models) BandModels();
+    new (ws.pyramid.models) BandModels(CoefficientKind::kPlanes);
     if (Status s = decode_stream(decoder, ws.pyramid, plane.chunk.stream, plane.shape.level); s != Status::kOk)
         return s;
     const size_t count = size_t{plane.width} * plane.height * 3;

@@ -42,6 +42,7 @@ void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint3
 
 // Streams of the image's levels, coarsest first. level_count: 1 .. exponent of the side; the first stream holds the
 // base and all coarser bands.
-std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count);
+std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count,
+                                             CoefficientKind kind = CoefficientKind::kPlain);
 
 }  // namespace gim

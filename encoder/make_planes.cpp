@@ -75,7 +75,7 @@ CodedPlane code(const AnalysedPlane& plane, double quality) {
     std::vector<std::vector<uint8_t>> streams;
     for (const Pyramid<float>& pyramid : plane.pyramids) {
         Pyramid<int32_t> bands = quantize_bands(pyramid, {quantizer}).bands;
-        streams.push_back(std::move(code_bands(bands, 1)[0]));
+        streams.push_back(std::move(code_bands(bands, 1, CoefficientKind::kPlanes)[0]));
     }
     return {plane_type(static_cast<uint32_t>(plane.kind)), serialize_plane(quantizer, plane.side_exponents, streams)};
 }

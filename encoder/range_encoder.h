@@ -41,24 +41,38 @@ class RangeEncoder {
         return value;
     }
 
-    // The stream. Its front part decodes the same whatever bytes follow, so the raw part can.
+    // The stream.
     std::vector<uint8_t> finish() {
-        // As few bytes as name a span of values inside the range.
-        for (int bytes = 1;; ++bytes) {
-            const uint64_t unit = uint64_t{1} << (64 - 8 * bytes);
-            const uint64_t rounded = (low_ + (unit - 1)) & ~(unit - 1);
-            const uint64_t offset = rounded - low_;  // modulo 2^64, below unit
-            if (offset > range_ - unit || range_ < unit) continue;
-            if (rounded < low_) propagate_carry();
-            for (int i = 0; i < bytes; ++i) front_.push_back(static_cast<uint8_t>(rounded >> (56 - 8 * i)));
+        if (raw_count_ > 0) back_.push_back(static_cast<uint8_t>(raw_));
+        // As few more bytes of the front as make a number inside the range, given the bytes that follow: the raw part, and
+        // zeros beyond it.
+        uint64_t tail = 0;
+        for (size_t i = 0; i < 8; ++i) tail = tail << 8 | (i < back_.size() ? back_[back_.size() - 1 - i] : 0u);
+        for (uint32_t count = 0;; ++count) {
+            const uint32_t shift = 8 * count;
+            const uint64_t below = shift < 64 ? ~uint64_t{0} >> shift : 0;
+            const uint64_t rest = shift < 64 ? tail >> shift : 0, down = low_ & ~below, over = low_ & below;
+            if (rest >= over && rest - over < range_) {
+                append_front(down, count);
+                break;
+            }
+            const uint64_t up = below - over + 1;  // from low_ to the next multiple; 0 stands for 2^64
+            if (up == 0 || up >= range_ || rest >= range_ - up) continue;
+            if (low_ + up < low_) propagate_carry();
+            append_front(low_ + up, count);
             break;
         }
-        if (raw_count_ > 0) back_.push_back(static_cast<uint8_t>(raw_));
+        if (back_.empty()) {
+            while (!front_.empty() && front_.back() == 0) front_.pop_back();
+        }
         front_.insert(front_.end(), back_.rbegin(), back_.rend());
         return std::move(front_);
     }
 
   private:
+    void append_front(uint64_t bytes, uint32_t count) {
+        for (uint32_t i = 0; i < count; ++i) front_.push_back(static_cast<uint8_t>(bytes >> (56 - 8 * i)));
+    }
     void add_to_low(uint64_t amount) {
         low_ += amount;
         if (low_ < amount) propagate_carry();

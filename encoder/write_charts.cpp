@@ -155,7 +155,7 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
         chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }
-    BandModels models;
+    BandModels models(coefficient_kind_of(header));
     BorderModels border_models;
     BandScratch scratch(widest);
     std::vector<std::vector<uint8_t>> levels;

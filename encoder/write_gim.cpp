@@ -115,7 +115,7 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
                                      ? lossless_[i]
                                      : quantize_bands(lossy_[i], detail_coding_of(header)).bands;
         const uint32_t levels = header.level_count_of(i);
-        const auto coded = code_bands(bands, levels);
+        const auto coded = code_bands(bands, levels, coefficient_kind_of(header));
         for (uint32_t k = 0; k < levels; ++k) {
             const uint32_t level = levels - 1 - k;
             if (header.image_count() > 1) append_leb128(coded[k].size(), &sizes[level]);

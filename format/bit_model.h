@@ -11,6 +11,11 @@ namespace gim {
 
 class BitModel {
   public:
+    BitModel() = default;
+    // That starts as if it had learnt this much.
+    constexpr BitModel(uint16_t zero_probability, uint8_t age)
+        : quick_(zero_probability), slow_(zero_probability), age_(age) {}
+
     // Probability of a zero in 1/65536, 1 .. 65535.
     uint32_t zero_probability() const { return (uint32_t{quick_} + slow_) >> 1; }
 

@@ -48,6 +48,10 @@ inline DetailCoding detail_coding_of(const Header& header) {
             cell_area_of(header.cell_area)};
 }
 
+inline CoefficientKind coefficient_kind_of(const Header& header) {
+    return header.tangential > 0 ? CoefficientKind::kInFrames : CoefficientKind::kPlain;
+}
+
 struct DetailFrame {
     float axis[3][3];  // unit normal, unit tangent along the row, unit tangent across; right-handed
     float scale;       // of the normal step

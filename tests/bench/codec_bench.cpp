@@ -107,7 +107,7 @@ void entropy_decoding(benchmark::State& state) {
     const BandWork work = {rows.data(), rows.data() + BandWork::row_size(129), expected.data(), flags.data()};
     for (auto _ : state) {
         RangeDecoder decoder(streams[0]);
-        BandModels models;
+        BandModels models(CoefficientKind::kPlain);
         BandCoder coder(&decoder, &models, work);
         coder.code_base({bands.base.data(), 2, 2});
         for (uint32_t e = 0; e < 8; ++e) {

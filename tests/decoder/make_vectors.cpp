@@ -115,7 +115,7 @@ Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
             }
         }
         Pyramid<int32_t> bands = quantize_bands(analyse<Irreversible97>(std::move(values), side), {quantizer}).bands;
-        streams.push_back(code_bands(bands, 1)[0]);
+        streams.push_back(code_bands(bands, 1, CoefficientKind::kPlanes)[0]);
         uint8_t j = 0;
         while ((1u << j) + 1 < side) ++j;
         exponents.push_back(j);
@@ -137,7 +137,7 @@ Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quant
     Pyramid<int32_t> bands =
         quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer})
             .bands;
-    return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1));
+    return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1, CoefficientKind::kPlanes));
 }
 
 // ---- files in parts --------------------------------------------------------------------------------------------------
@@ -264,12 +264,21 @@ void write_valid(Writer& out) {
         out.valid("schema-33-lossy-" + std::to_string(genus), encode({hill(33, s, 6, 14)}, lossy(12, 17, 5)));
     }
 
-    // The same integers in other frames: none, without areas, and with steps as far apart as they get.
-    const Bytes framed = encode({hill(33, folded_sides(), 5, 3)}, lossy(12, 9, 4));
+    // No frames; and the same integers in frames without areas, and with steps as far apart as they get.
+    const GeometryImage folded = hill(33, folded_sides(), 5, 3);
+    const Bytes framed = encode({folded}, lossy(12, 9, 4));
+    out.valid("frames-none", with_parts(framed, [&](Parts& p) {
+                  p.header.tangential = p.header.cell_area = 0;
+                  Pyramid<float> pyramid =
+                      analyse<Irreversible97>(to_units<float>(folded.positions, p.header), folded.side);
+                  subtract_middle(&pyramid, p.header.bits);
+                  Pyramid<int32_t> bands = quantize_bands(pyramid, {p.header.quantizer}).bands;
+                  std::vector<Bytes> streams = code_bands(bands, p.header.level_count);
+                  std::copy(streams.begin(), streams.end(), p.payloads.begin() + 1);
+              }));
     const auto with_frames = [&](uint8_t tangential, uint8_t cell_area) {
         return with_parts(framed, [&](Parts& p) { p.header.tangential = tangential, p.header.cell_area = cell_area; });
     };
-    out.valid("frames-none", with_frames(0, 0));
     out.valid("frames-without-area", with_frames(24, 0));
     out.valid("frames-wide-steps", with_frames(255, 255));
     out.valid("frames-narrow-steps", with_frames(1, 1));

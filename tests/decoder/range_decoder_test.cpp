@@ -60,6 +60,25 @@ TEST(RangeCoder, LongRunsOfTheLikelyBitAndCarriesSurvive) {
     }
 }
 
+TEST(RangeCoder, StreamsEndWithTheirLastNeededByte) {
+    EXPECT_TRUE(RangeEncoder().finish().empty());
+    Random random(7);
+    for (int round = 0; round < 300; ++round) {
+        RangeEncoder encoder;
+        BitModel models[8];
+        double bits = 0;
+        const uint32_t skew = 1 + random.below(200);
+        for (uint32_t i = 0; i < random.below(400); ++i) {
+            BitModel& model = models[random.below(8)];
+            const uint32_t bit = random.below(skew) == 0;
+            bits -= std::log2(std::abs(bit - model.zero_probability() / 65536.0));
+            encoder.code_bit(model, bit);
+        }
+        // Below one byte more than the information, which is rounded up to a whole one.
+        EXPECT_LT(static_cast<double>(encoder.finish().size()), bits / 8 + 2);
+    }
+}
+
 TEST(RangeCoder, ComesNearTheEntropy) {
     Random random(2);
     RangeEncoder encoder;
@@ -112,8 +131,9 @@ TEST(BandCoder, RandomLevelsRoundTrip) {
             return LevelBands{
                 {all[e * 3].data(), h + 1, h}, {all[e * 3 + 1].data(), h, h + 1}, {all[e * 3 + 2].data(), h, h}};
         };
+        const auto kind = round % 2 ? CoefficientKind::kPlain : CoefficientKind::kInFrames;
         const auto code_all = [&](auto& coder, std::vector<std::vector<int32_t>>& all) {
-            BandModels models;
+            BandModels models(kind);
             BandCoder band_coder(&coder, &models, work);
             for (uint32_t e = 0; e < top; ++e) {
                 const LevelBands parents = level(all, e ? e - 1 : 0);
@@ -140,7 +160,7 @@ TEST(BandCoder, AnyBytesDecodeOrAreRefused) {
         std::vector<uint32_t> expected(BandWork::row_size(17));
         std::vector<uint8_t> flags(BandWork::block_size(17));
         RangeDecoder decoder(stream);
-        BandModels models;
+        BandModels models(round % 2 ? CoefficientKind::kPlain : CoefficientKind::kInFrames);
         BandCoder coder(&decoder, &models,
                         {rows.data(), rows.data() + BandWork::row_size(17), expected.data(), flags.data()});
         refused += !coder.code_level({{a.data(), 17, 16}, {b.data(), 16, 17}, {c.data(), 16, 16}}, nullptr) ||
