@@ -41,16 +41,15 @@ Pyramid<float> unflattened(const std::vector<float>& values, uint32_t side) {
     return pyramid;
 }
 
-float determinant_area(const DetailFrame& frame, float cell_area) {
-    // scale = (cell area / area)^(1/4)
+// Area over cell_area, back from scale = (cell_area / area)^(1/4).
+float relative_area_of(const DetailFrame& frame, float cell_area) {
     const float s2 = frame.scale * frame.scale;
     return cell_area > 0 ? 1 / (s2 * s2) : 1;
 }
 
 }  // namespace
 
-DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding)
-    : side_(side) {
+DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding) : side_(side) {
     const auto steps = static_cast<uint32_t>(std::countr_zero(side - 1));
     std::vector<std::vector<float>> images(steps + 1);  // by exponent
     images[steps] = image;
@@ -76,7 +75,7 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
                     steps_in(frames_.back(), detail_steps, orientation, step);
                     steps_.push_back(step[0]);
                     tangential_steps_.push_back(step[1]);
-                    areas_.push_back(determinant_area(frames_.back(), detail_steps.cell_area));
+                    areas_.push_back(relative_area_of(frames_.back(), detail_steps.cell_area));
                     norms_.push_back(norm);
                 }
             }

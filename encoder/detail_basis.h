@@ -19,7 +19,7 @@ class DetailBasis {
     // normal and two tangents of a detail. All in units.
     using Coordinates = std::vector<float>;
 
-    // image: side * side interleaved triples, units.
+    // image: side * side interleaved triples, units. coding: in frames.
     DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding);
 
     size_t size() const { return 3 * frames_.size(); }

@@ -1,7 +1,10 @@
 #include "encoder/encode_squares.h"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "encoder/result.h"
 
@@ -30,6 +33,7 @@ Result<bool> make_fits(FittedSquares& state, uint64_t seed) {
     return true;
 }
 
+// To the quantizer of the parameters.
 Result<bool> fit_squares(FittedSquares& state, const CodingParameters& parameters, CodedFit::Effort effort,
                          const EncodeOptions& options, StageClock& clock) {
     clock.begin(Stage::kFit);

@@ -25,6 +25,7 @@ Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceS
     return reference.compare(decoded, options);
 }
 
+// From a rate target to the file that meets it.
 class RateSearch {
   public:
     RateSearch(const CodingJob& job, CodingParameters parameters, const EncodeOptions& options,

@@ -12,7 +12,6 @@
 #include "encoder/fit_coded.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -163,7 +162,7 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
-// Per ring sample; the image's sideband is in order.
+// Per ring sample; the image's sideband is in order (glue_ring has taken it).
 std::vector<uint32_t> classes_of(const GeometryImage& image) {
     std::vector<uint32_t> classes(ring_length(image.side));
     SeamTable seams;
@@ -194,6 +193,7 @@ struct CodedFit::Impl {
     uint64_t seed;
     uint64_t rounds = 0;
 
+    // The samples as interleaved triples in units of the header, not rounded; and back.
     std::vector<float> units(const Header& header) const {
         std::vector<float> image(3 * fitter.positions().size());
         for (size_t i = 0; i < fitter.positions().size(); ++i) {
@@ -215,6 +215,7 @@ struct CodedFit::Impl {
         fitter.place(frame.into(positions));
     }
 
+    // One round of the head of this file. The membrane of other fits is left out: the price does its work.
     void round(const Header& header, Free free) {
         const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(header);

@@ -8,7 +8,9 @@
 // by Reweighted l1 Minimization. 2008, whose logarithm stands for bits.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "encoder/fit.h"
 #include "encoder/geometry_image.h"
@@ -30,8 +32,8 @@ class CodedFit {
         kFinal,   // and what its file will hold
     };
     // Goes on from where the last call ended (the start, at first). header: of the file to be: units, quantizer,
-    // tangential steps and cell area. Returns the samples, equal where glued. The same for any number of threads. Cost: of
-    // 257 x 257 samples about 0.3 s a round on two cores, 4 or 11 rounds.
+    // tangential steps and cell area. Returns the samples, equal where glued; steps fold nothing over, the quantizer may.
+    // The same for any number of threads. Cost: of 257 x 257 samples about 0.3 s a round on two cores, 5 or 11 rounds.
     std::vector<Vec3> run(const Header& header, Effort effort, const Progress& progress = {});
     // The next call goes on from the start again: samples that a coarse quantizer has heaped up do not come apart.
     void restart();

@@ -188,6 +188,7 @@ void FitSystem::add_anchor(uint32_t i, const Eigen::Matrix3d& weight, const Vec3
     matrix.add(i, i, symmetric(weight), 1);
     right[i] += weight * residual;
 }
+
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
                    const std::vector<bool>& held, double front) {
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
@@ -578,4 +579,5 @@ double Fitter::facing(const std::vector<Vec3>& positions, const std::array<Trian
     }
     return least;
 }
+
 }  // namespace gim

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "encoder/closest_point.h"
@@ -18,6 +19,7 @@
 
 namespace gim {
 
+// The frame, and the ways into it and out.
 struct FitFrame {
     Vec3 middle = Vec3::Zero();
     double scale = 1;  // of the input's unit
@@ -64,8 +66,8 @@ class Fitter {
 
     const std::vector<Vec3>& positions() const { return x_; }
     const std::vector<bool>& held() const { return held_; }
-    const std::vector<bool>& fixed() const { return fixed_; }
     FitQuality quality() const;
+    // In the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }
 
     // Where faces look away from the surface, slides the samples around them along it towards the middle of their
@@ -78,6 +80,7 @@ class Fitter {
     FitSystem linearise(double lambda, double density, uint64_t seed);
     // Ends it. Goes as far as no sample moves more than half its spacing and, if guarded, no steep cell gets steeper.
     void take_step(const std::vector<Vec3>& step, bool guarded);
+    // Both, with the least of the energy in between.
     void round(double lambda, double density, uint64_t seed, bool guarded);
 
   private:
