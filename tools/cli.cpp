@@ -102,7 +102,7 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     sub->add_option(
            "--fit", a.command.options.fit,
            "How far samples may move towards the surface: stiff costs hardly any bytes, loose finds creases; auto "
-           "is loose for --lossless, else stiff")
+           "is loose for --lossless, else stiff, and fits lossy squares to their quantizer")
         ->transform(CLI::CheckedTransformer(fits).description(""))
         ->type_name("auto|none|stiff|loose")
         ->default_str("auto");
