@@ -159,8 +159,7 @@ void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint3
     }
 }
 
-std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count,
-                                             CoefficientKind kind) {
+std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count, CoefficientKind kind) {
     BandModels models(kind);
     BandScratch scratch(pyramid.columns);
     std::vector<std::vector<uint8_t>> streams;

@@ -48,11 +48,13 @@ class RateSearch {
             GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kFinal));
             (void)fitted;
             auto bytes = search(quantizer);
-            if (!bytes.ok() && !met.empty()) return met;
-            if (target_.kind == RateTarget::Kind::kQuality || again == kMostRefits) return bytes;
+            if (target_.kind == RateTarget::Kind::kQuality) return bytes;
+            const bool is_worse =
+                !bytes.ok() || (target_.kind == RateTarget::Kind::kPsnr && bytes.value().size() > met.size());
+            if (!met.empty() && is_worse) return met;
+            if (again == kMostRefits) return bytes;
             if (!bytes.ok()) {
                 // Samples that were fitted to too coarse a quantizer reach no target.
-                job_.restart_fit();
                 quantizer = clamped_quantizer(quantizer / 2);
                 continue;
             }
@@ -68,12 +70,14 @@ class RateSearch {
     static constexpr double kNearEnough = 0.25;  // octaves between the quantizer of the fit and that of the file
     static constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
 
+    // Goes on from the fit before, unless that was a coarser one: what it let go of may not be found again.
     Result<bool> fit(double quantizer, CodedFit::Effort effort) {
-        parameters_.quantizer = quantizer;
+        if (quantizer < fitted_to_ * std::exp2(-kNearEnough)) job_.restart_fit();
+        fitted_to_ = parameters_.quantizer = quantizer;
         return job_.fit(parameters_, effort);
     }
 
-    // By quick fits, each of which begins where the one before ended.
+    // By quick fits.
     Result<double> approach(double quantizer) {
         for (int k = 0; k < kMostApproaches; ++k) {
             GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kSearch));
@@ -120,6 +124,7 @@ class RateSearch {
 
     const CodingJob& job_;
     CodingParameters parameters_;
+    double fitted_to_ = 0;  // quantizer of the last fit
     const RateTarget target_;
     const ReferenceSurface& reference_;
     CompareOptions quick_, full_;

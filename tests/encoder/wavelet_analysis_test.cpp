@@ -35,7 +35,8 @@ TEST(Reversible53, EverySampleComesBackAtEverySide) {
         std::vector<int32_t> image(size_t{side} * side * 3);
         for (int32_t& v : image) v = static_cast<int32_t>(random.below(1u << 20));
         const Pyramid<int32_t> bands = analyse<Reversible53>(image, side);
-        EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<DetailSteps>(bands.levels.size()), bands.base), image);
+        EXPECT_EQ(synthesize_all<Reversible53>(bands, std::vector<DetailSteps>(bands.levels.size()), bands.base),
+                  image);
     }
 }
 
