@@ -74,6 +74,10 @@ void CellArea::set_details(Header* header) const {
     header->cell_area = code;
 }
 
+float quantizer_in_range(double quantizer) {
+    return std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
+}
+
 std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t> seams,
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text) {

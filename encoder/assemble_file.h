@@ -38,6 +38,9 @@ class CellArea {
     uint64_t cells_ = 0;
 };
 
+// As near to a lossy header's quantizer as the format takes.
+float quantizer_in_range(double quantizer);
+
 // Positions in units of the header's quantizer, as interleaved triples.
 template <class Sample>
 std::vector<Sample> to_units(std::span<const Vec3> positions, const Header& header) {

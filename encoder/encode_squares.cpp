@@ -39,9 +39,9 @@ Result<bool> fit_squares(FittedSquares& state, const CodingParameters& parameter
     clock.begin(Stage::kFit);
     GIM_TRY(made, make_fits(state, options.seed));
     (void)made;
-    GIM_TRY(writer, state.writer(parameters));
-    const Header header = writer.header(parameters.quantizer);
-    if (!state.units) state.units = header;
+    if (!state.units) state.units = units_of(state.squares.images, parameters.bits);
+    Header header = *state.units;
+    header.quantizer = quantizer_in_range(parameters.quantizer);
     for (size_t i = 0; i < state.fits.size(); ++i)
         state.squares.images[i].positions = state.fits[i].run(header, effort, clock.progress());
     clock.begin(Stage::kCode);

@@ -144,8 +144,7 @@ Result<ChartFileWriter> ChartFileWriter::create(const ChartImages& images, const
 std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
     Header header = header_;
     header.level_psnr = level_psnr_;
-    if (header.coding == Coding::kLossy)
-        header.quantizer = std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
+    if (header.coding == Coding::kLossy) header.quantizer = quantizer_in_range(quantizer);
 
     uint32_t widest = 0;
     std::vector<Pyramid<int32_t>> bands;

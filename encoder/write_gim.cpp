@@ -49,6 +49,17 @@ std::string complaint(std::span<const GeometryImage> images, const CodingParamet
 
 }  // namespace
 
+Header units_of(std::span<const GeometryImage> images, uint32_t bits) {
+    Header header;
+    std::vector<std::span<const Vec3>> positions;
+    for (const GeometryImage& image : images) positions.push_back(image.positions);
+    set_quantizer(positions, bits, &header);
+    CellArea area;
+    for (const GeometryImage& image : images) area.add(image.positions, {}, image.side, image.side);
+    area.set_details(&header);
+    return header;
+}
+
 Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const CodingParameters& parameters) {
     if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
 
@@ -70,18 +81,14 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     writer.text_ = parameters.text;
     if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
 
-    std::vector<std::span<const Vec3>> positions;
-    for (const GeometryImage& image : images) positions.push_back(image.positions);
-    set_quantizer(positions, parameters.bits, &header);
-    if (header.coding == Coding::kLossy && parameters.units) {
-        header.origin = parameters.units->origin;
-        header.step = parameters.units->step;
-        header.tangential = parameters.units->tangential;
-        header.cell_area = parameters.units->cell_area;
-    } else if (header.coding == Coding::kLossy) {
-        CellArea area;
-        for (const GeometryImage& image : images) area.add(image.positions, {}, image.side, image.side);
-        area.set_details(&header);
+    const bool shared_units = header.coding == Coding::kLossy && parameters.units;
+    const Header units = shared_units ? *parameters.units : units_of(images, parameters.bits);
+    header.bits = units.bits;
+    header.origin = units.origin;
+    header.step = units.step;
+    if (header.coding == Coding::kLossy) {
+        header.tangential = units.tangential;
+        header.cell_area = units.cell_area;
     }
 
     for (const GeometryImage& image : images) {
@@ -100,8 +107,7 @@ Header GimWriter::header(double quantizer) const {
     Header header = header_;
     header.side_exponents = side_exponents_;
     header.level_psnr = level_psnr_;
-    if (header.coding == Coding::kLossy)
-        header.quantizer = std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
+    if (header.coding == Coding::kLossy) header.quantizer = quantizer_in_range(quantizer);
     return header;
 }
 

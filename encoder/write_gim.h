@@ -22,7 +22,7 @@ struct CodingParameters {
     uint32_t base_side = 17;         // side of the coarsest stored level; smaller ones cost about 7 bytes each
     std::vector<CodedPlane> planes;  // stored behind the levels
     std::string text;                // goes into a META chunk unless empty; UTF-8
-    std::optional<Header> units;     // lossy: origin, step and cell area are this header's instead of the images' own
+    std::optional<Header> units;     // lossy: units_of() other images, instead of these images' own
     bool level_psnr = false;         // leaves room in the header for set_level_psnr
 };
 
@@ -46,6 +46,10 @@ class GimWriter final : public FileWriter {
     std::vector<Pyramid<int32_t>> lossless_;
     std::vector<Pyramid<float>> lossy_;
 };
+
+// What positions and steps of a file of these images are counted in: a header with bits, origin, step, tangential steps and
+// cell area only.
+Header units_of(std::span<const GeometryImage> images, uint32_t bits);
 
 // Writes the measured PSNR of each level (finest first, dB) into the header of a file of ours that has room for them.
 // The size stays.

@@ -266,13 +266,14 @@ void BandCoder<Coder>::expect(const Surroundings& around, uint32_t row, uint32_t
             }
         }
     }
-    // A row of another band of the same level, `shift` columns further; it has up to one row or column less, or more.
-    const auto add = [&](const Band& other, uint32_t from_row, uint32_t shift, uint32_t first_weight,
+    // A row of another band of the same level, `shift` columns further (-1, 0, 1); it has up to one row or column less, or
+    // more.
+    const auto add = [&](const Band& other, uint32_t from_row, int32_t shift, uint32_t first_weight,
                          uint32_t later_weight) {
         if (from_row >= other.rows) return;
         const int32_t* from = other.row(from_row);
-        const uint32_t add_end = other.columns > shift ? std::min(end, other.columns - shift) : 0;
-        for (uint32_t i = begin * 3; i < add_end * 3; i += 3) {
+        const int32_t add_end = std::min(static_cast<int32_t>(end), static_cast<int32_t>(other.columns) - shift);
+        for (int32_t i = std::max(static_cast<int32_t>(begin), -shift) * 3; i < add_end * 3; i += 3) {
             expected[i] += first_weight * magnitude_of(from[i + shift * 3]);
             expected[i + 1] += later_weight * magnitude_of(from[i + shift * 3 + 1]);
             expected[i + 2] += later_weight * magnitude_of(from[i + shift * 3 + 2]);
@@ -282,19 +283,12 @@ void BandCoder<Coder>::expect(const Surroundings& around, uint32_t row, uint32_t
     if (around.horizontal) {
         for (uint32_t below = 0; below < 2; ++below) {
             add(*around.horizontal, row + below, 0, first.horizontal, later.horizontal);
-            if (around.orientation != Orientation::kVertical || row + below >= around.horizontal->rows) continue;
-            // The column before.
-            const int32_t* from = around.horizontal->row(row + below);
-            const uint32_t left_end = std::min(end, around.horizontal->columns + 1);
-            for (uint32_t i = std::max(begin, 1u) * 3; i < left_end * 3; i += 3) {
-                expected[i] += first.horizontal * magnitude_of(from[i - 3]);
-                expected[i + 1] += later.horizontal * magnitude_of(from[i - 2]);
-                expected[i + 2] += later.horizontal * magnitude_of(from[i - 1]);
-            }
+            if (around.orientation == Orientation::kVertical)
+                add(*around.horizontal, row + below, -1, first.horizontal, later.horizontal);
         }
     }
     if (around.vertical) {
-        for (uint32_t shift = 0; shift < 2; ++shift) add(*around.vertical, row, shift, first.vertical, later.vertical);
+        for (int32_t shift = 0; shift < 2; ++shift) add(*around.vertical, row, shift, first.vertical, later.vertical);
     }
 }
 
