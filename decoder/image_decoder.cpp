@@ -33,9 +33,9 @@ Status image_stream(const Header& header, std::span<const uint8_t> payload, uint
 
 template <class Wavelet>
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
-                      const ImageWorkspace& ws, float** samples) {
-    const PyramidShape shape =
-        square_shape(header.side_exponents[image], level, detail_coding_of(header), 1 << (header.bits - 1));
+                      const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
+    const PyramidShape shape = square_shape(header.side_exponents[image], level, detail_coding_of(header),
+                                            1 << (header.bits - 1), header.tangential > 0 ? &seams : nullptr);
     PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
     new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
     for (uint32_t l = header.level_count_of(image); l-- > level;) {
@@ -79,6 +79,7 @@ PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     lay_out_coder(side, arena, &ws.pyramid);
     lay_out_planes(side, side, arena, &ws.pyramid);
     ws.class_of = arena->take<uint32_t>(ring);
+    ws.pyramid.rim = ws.class_of;  // done with before classes are made
     ws.fuse.sums = arena->take<float>(ring * 3);
     ws.fuse.first = arena->take<uint32_t>(ring);
     ws.fuse.members = arena->take<uint32_t>(ring);
@@ -98,8 +99,8 @@ ImageWorkspace lay_out(uint32_t side, Arena* arena) {
 Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                     const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
     const Status status = header.coding == Coding::kLossless
-                              ? decode_pyramid<Reversible53>(header, file, image, level, ws, samples)
-                              : decode_pyramid<Irreversible97>(header, file, image, level, ws, samples);
+                              ? decode_pyramid<Reversible53>(header, file, image, level, seams, ws, samples)
+                              : decode_pyramid<Irreversible97>(header, file, image, level, seams, ws, samples);
     if (status != Status::kOk) return status;
     const uint32_t side = ((header.side(image) - 1) >> level) + 1;
     ring_classes(seams, side, {ws.class_of, ring_length(side)});

@@ -27,9 +27,10 @@ struct ImageWorkspace : PlaneWorkspace {
 };
 
 // The pyramid of a square of side 2^exponent + 1.
-inline PyramidShape square_shape(uint32_t exponent, uint32_t level, const DetailCoding& details, int32_t middle) {
+inline PyramidShape square_shape(uint32_t exponent, uint32_t level, const DetailCoding& details, int32_t middle,
+                                 const SeamTable* seams = nullptr) {
     const uint32_t side = (1u << exponent) + 1;
-    return {side, side, exponent, level, details, middle, false};
+    return {side, side, exponent, level, details, middle, false, seams};
 }
 
 // side: of the level that is asked for.

@@ -20,6 +20,7 @@ struct PyramidWorkspace {
     int32_t* bands[2] = {};  // of the level being decoded and of its parent, in turn
     void* images[2] = {};    // int32_t or float triples, in turn; the requested level ends in images[0]
     void* synthesis = nullptr;
+    uint32_t* rim = nullptr;  // ring_length(side) numbers where a shape has seams
 };
 
 // columns, rows: of the level that is asked for. models and band_work are left out: charts of one image share them.
@@ -28,12 +29,13 @@ void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorksp
 void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws);
 
 struct PyramidShape {
-    uint32_t columns = 2, rows = 2;  // at full resolution
-    uint32_t steps = 0;              // from the base to full resolution
-    uint32_t level = 0;              // asked for: that many steps are left out
-    DetailCoding details;            // 9/7 only
-    int32_t middle = 0;              // what base samples are stored relative to
-    bool chained_base = false;       // a base value is stored relative to the one before it
+    uint32_t columns = 2, rows = 2;    // at full resolution
+    uint32_t steps = 0;                // from the base to full resolution
+    uint32_t level = 0;                // asked for: that many steps are left out
+    DetailCoding details;              // 9/7 only
+    int32_t middle = 0;                // what base samples are stored relative to
+    bool chained_base = false;         // a base value is stored relative to the one before it
+    const SeamTable* seams = nullptr;  // of a square whose mates share their details
 };
 
 inline constexpr float kLargestUnit = 0x1p22f;  // writers stay well below; keeps all later arithmetic finite
@@ -104,11 +106,16 @@ class PyramidDecoder {
         LevelBands parents;
         const bool has_parents = step > 1;
         if (has_parents) parents = bands_in(ws_.bands[slot(step - 1)], columns_at(step - 1), rows_at(step - 1));
-        if (!coder.code_level(bands, has_parents ? &parents : nullptr)) return false;
+        SharedRim rim;
+        if (shape_.seams) {
+            rim_sources(*shape_.seams, columns, {ws_.rim, ring_length(columns)});
+            rim = {ws_.rim, columns};
+        }
+        if (!coder.code_level(bands, has_parents ? &parents : nullptr, rim)) return false;
         DetailSteps steps;
         if constexpr (Wavelet::kSteps > 2) steps = shape_.details.steps_at(shape_.steps - step + 1);
         synthesize<Wavelet>(columns, rows, image(step - 1), bands, steps, static_cast<Sample*>(ws_.synthesis),
-                            image(step));
+                            image(step), rim);
         return true;
     }
 

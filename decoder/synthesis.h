@@ -7,6 +7,7 @@
 #include "format/band_code.h"
 #include "format/detail_frame.h"
 #include "format/lifting.h"
+#include "format/rim.h"
 
 namespace gim {
 
@@ -14,9 +15,10 @@ namespace gim {
 constexpr size_t synthesis_work_size(uint32_t columns) { return (size_t{columns} + 4) * 3; }
 
 // columns, rows: of the image, 2 or more. low: low_count(rows) x low_count(columns) triples. image: rows x columns triples,
-// may not overlap the inputs. steps: of the 9/7; the reversible wavelet has none.
+// may not overlap the inputs. steps, rim: of the 9/7; the reversible wavelet has none.
 template <class Wavelet>
 void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
-                const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image);
+                const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image,
+                const SharedRim& rim = {});
 
 }  // namespace gim

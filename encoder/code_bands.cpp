@@ -94,6 +94,31 @@ QuantizedBand quantize(const RealBand& band, const FrameField& frames, const Det
     return result;
 }
 
+float* detail_at(AnalysisLevel<float>& level, uint32_t side, Orientation orientation, uint32_t row, uint32_t column) {
+    const bool is_horizontal = orientation == Orientation::kHorizontal;
+    const uint32_t columns = is_horizontal ? high_count(side) : low_count(side);
+    return &(is_horizontal ? level.horizontal : level.vertical)[(size_t{row} * columns + column) * 3];
+}
+
+// What mates share becomes the mean of both, copies become zero.
+void share_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t side) {
+    rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+        const DetailPlace from = rim.source_of(orientation, row, column);
+        float *copy = detail_at(level, side, orientation, row, column),
+              *source = detail_at(level, side, from.orientation, from.row, from.column);
+        for (int k = 0; k < 3; ++k) source[k] = 0.5f * (source[k] + copy[k]);
+        std::fill_n(copy, 3, 0.0f);
+    });
+}
+
+void copy_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t side) {
+    rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+        const DetailPlace from = rim.source_of(orientation, row, column);
+        std::copy_n(detail_at(level, side, from.orientation, from.row, from.column), 3,
+                    detail_at(level, side, orientation, row, column));
+    });
+}
+
 // The base is not sparse: plain rounding.
 std::vector<int32_t> quantize_base(const std::vector<float>& values, float step) {
     std::vector<int32_t> out;
@@ -104,7 +129,7 @@ std::vector<int32_t> quantize_base(const std::vector<float>& values, float step)
 
 }  // namespace
 
-QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding) {
+QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding, const SeamTable* seams) {
     Pyramid<int32_t> out;
     out.columns = pyramid.columns;
     out.rows = pyramid.rows;
@@ -120,7 +145,9 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
         const uint32_t columns = low_count(decoded.columns), rows = low_count(decoded.rows);
         const DetailSteps detail_steps = coding.steps_at(steps - e + 1);
         const FrameField frames(decoded.base.data(), columns, rows, detail_steps.cell_area);
-        const AnalysisLevel<float>& level = pyramid.levels[e - 1];
+        AnalysisLevel<float> level = pyramid.levels[e - 1];
+        const OwnSharedRim rim(coding.in_frames ? seams : nullptr, decoded.columns);
+        share_details(rim.view(), level, decoded.columns);
         const uint32_t high_columns = high_count(decoded.columns), high_rows = high_count(decoded.rows);
         QuantizedBand horizontal =
             quantize({level.horizontal, rows, high_columns}, frames, detail_steps, Orientation::kHorizontal);
@@ -132,7 +159,8 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
             {std::move(horizontal.integers), std::move(vertical.integers), std::move(diagonal.integers)});
         if (!coding.in_frames) continue;
         decoded.levels[0] = {std::move(horizontal.details), std::move(vertical.details), std::move(diagonal.details)};
-        decoded.base = restore<Irreversible97>(decoded);
+        copy_details(rim.view(), decoded.levels[0], decoded.columns);
+        decoded.base = restore<Irreversible97>(decoded, coding.in_frames ? seams : nullptr);
     }
     return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
 }
@@ -146,20 +174,23 @@ BandWork BandScratch::work() {
     return {rows_.data(), rows_.data() + rows_.size() / 2, expected_.data(), flags_.data()};
 }
 
-void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level) {
+void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,
+                const SeamTable* seams) {
     if (from_step == 0) coder.code_base({pyramid.base.data(), pyramid.rows_at(0), pyramid.columns_at(0)});
     for (uint32_t step = from_step; step < pyramid.steps() - to_level; ++step) {
         const LevelBands bands = bands_of(pyramid, step);
+        const OwnSharedRim rim(seams, pyramid.columns_at(step + 1));
         if (step == 0) {
-            coder.code_level(bands, nullptr);
+            coder.code_level(bands, nullptr, rim.view());
         } else {
             const LevelBands parents = bands_of(pyramid, step - 1);
-            coder.code_level(bands, &parents);
+            coder.code_level(bands, &parents, rim.view());
         }
     }
 }
 
-std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count, CoefficientKind kind) {
+std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count, CoefficientKind kind,
+                                             const SeamTable* seams) {
     BandModels models(kind);
     BandScratch scratch(pyramid.columns);
     std::vector<std::vector<uint8_t>> streams;
@@ -167,7 +198,7 @@ std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t
     for (uint32_t level = level_count; level-- > 0;) {
         RangeEncoder coder;
         BandCoder<RangeEncoder> band_coder(&coder, &models, scratch.work());
-        code_steps(band_coder, pyramid, done, level);
+        code_steps(band_coder, pyramid, done, level, seams);
         done = pyramid.steps() - level;
         streams.push_back(coder.finish());
     }

@@ -49,12 +49,14 @@ float relative_area_of(const DetailFrame& frame, float cell_area) {
 
 }  // namespace
 
-DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding) : side_(side) {
+DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding,
+                         const SeamTable* seams)
+    : side_(side), seams_(seams) {
     const auto steps = static_cast<uint32_t>(std::countr_zero(side - 1));
     std::vector<std::vector<float>> images(steps + 1);  // by exponent
     images[steps] = image;
     for (uint32_t e = steps; e > 0; --e)
-        images[e - 1] = gim::analyse<Irreversible97>(images[e], (1u << e) + 1, (1u << e) + 1, 1).base;
+        images[e - 1] = gim::analyse<Irreversible97>(images[e], (1u << e) + 1, (1u << e) + 1, 1, seams).base;
 
     frames_.assign(4, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
     steps_.assign(4, low_band_step(coding.quantizer, steps));
@@ -80,9 +82,24 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
                 }
             }
         };
+        const OwnSharedRim rim(seams, (1u << e) + 1);
+        const auto first = static_cast<uint32_t>(frames_.size());
+        const auto triple = [&](Orientation orientation, uint32_t row, uint32_t column) {
+            const bool is_horizontal = orientation == Orientation::kHorizontal;
+            return first + (is_horizontal ? row * highs : lows * highs + row * lows) + column;
+        };
+        rim.view().for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+            const DetailPlace from = rim.view().source_of(orientation, row, column);
+            copies_.push_back({triple(orientation, row, column), triple(from.orientation, from.row, from.column)});
+        });
         add_band(Orientation::kHorizontal, lows, highs);
         add_band(Orientation::kVertical, highs, lows);
         add_band(Orientation::kDiagonal, highs, highs);
+    }
+    is_copy_.resize(frames_.size());
+    for (const auto& [copy, source] : copies_) {
+        is_copy_[copy] = true;
+        norms_[source] *= std::sqrt(2.0f);
     }
 }
 
@@ -96,8 +113,19 @@ void DetailBasis::turn(Coordinates& coordinates, Way way) const {
     });
 }
 
+void DetailBasis::gather_copies(Coordinates& coordinates, float weight) const {
+    for (const auto& [copy, source] : copies_) {
+        for (size_t k = 0; k < 3; ++k) {
+            float &to = coordinates[3 * size_t{source} + k], &from = coordinates[3 * size_t{copy} + k];
+            to = weight * (to + from);
+            from = 0;
+        }
+    }
+}
+
 DetailBasis::Coordinates DetailBasis::analyse(const std::vector<float>& image) const {
-    Coordinates coordinates = flat(gim::analyse<Irreversible97>(image, side_));
+    Coordinates coordinates = flat(gim::analyse<Irreversible97>(image, side_, seams_));
+    gather_copies(coordinates, 0.5f);
     turn(coordinates, Way::kIntoFrames);
     return coordinates;
 }
@@ -105,11 +133,13 @@ DetailBasis::Coordinates DetailBasis::analyse(const std::vector<float>& image) c
 std::vector<float> DetailBasis::synthesize(const Coordinates& coordinates) const {
     Coordinates turned = coordinates;
     turn(turned, Way::kOutOfFrames);
-    return restore<Irreversible97>(unflattened(turned, side_));
+    for (const auto& [copy, source] : copies_) std::copy_n(&turned[3 * size_t{source}], 3, &turned[3 * size_t{copy}]);
+    return restore<Irreversible97>(unflattened(turned, side_), seams_);
 }
 
 DetailBasis::Coordinates DetailBasis::transposed(std::vector<float> image) const {
-    Coordinates coordinates = flat(restore_transposed(std::move(image), side_));
+    Coordinates coordinates = flat(restore_transposed(std::move(image), side_, seams_));
+    gather_copies(coordinates, 1);
     turn(coordinates, Way::kIntoFrames);
     return coordinates;
 }

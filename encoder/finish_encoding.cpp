@@ -36,65 +36,87 @@ class RateSearch {
         quick_.samples = kSearchSamples;
     }
 
-    // Fits what is coded to quantizers until one is near the target's, then finds that.
     Result<std::vector<uint8_t>> run(double quantizer) {
         if (job_.fit == nullptr || target_.kind == RateTarget::Kind::kLossless) return search(quantizer);
-        if (target_.kind != RateTarget::Kind::kQuality) {
-            GIM_TRY(nearer, approach(quantizer));
-            quantizer = nearer;
+        if (target_.kind == RateTarget::Kind::kQuality) {
+            GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kFinal));
+            return bytes;
         }
-        std::vector<uint8_t> met;  // the target, by the fit before
-        for (int again = 0;; ++again) {
-            GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kFinal));
-            (void)fitted;
-            auto bytes = search(quantizer);
-            if (target_.kind == RateTarget::Kind::kQuality) return bytes;
-            const bool is_worse =
-                !bytes.ok() || (target_.kind == RateTarget::Kind::kPsnr && bytes.value().size() > met.size());
-            if (!met.empty() && is_worse) return met;
-            if (again == kMostRefits) return bytes;
-            if (!bytes.ok()) {
-                // Samples that were fitted to too coarse a quantizer reach no target.
-                quantizer = clamped_quantizer(quantizer / 2);
-                continue;
-            }
-            const double found = quantizer_of(bytes.value());
-            if (std::abs(std::log2(found / quantizer)) < kNearEnough) return bytes;
-            met = std::move(bytes.value());
-            quantizer = found;
-        }
+        GIM_TRY(nearer, approach(quantizer));
+        return fit_to_target(nearer);
     }
 
   private:
-    static constexpr int kMostApproaches = 4, kMostRefits = 3;
-    static constexpr double kNearEnough = 0.25;  // octaves between the quantizer of the fit and that of the file
+    using Bytes = std::vector<uint8_t>;
+    static constexpr int kMostApproaches = 4, kMostFits = 9;
+    static constexpr double kNear = 0.25;       // octaves of the quantizer that a fit can go on over
+    static constexpr double kPsnrSlack = 0.12;  // dB above the target that are good enough
+    static constexpr double kBytesSlack = 0.01;
     static constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
 
     // Goes on from the fit before, unless that was a coarser one: what it let go of may not be found again.
-    Result<bool> fit(double quantizer, CodedFit::Effort effort) {
-        if (quantizer < fitted_to_ * std::exp2(-kNearEnough)) job_.restart_fit();
+    Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {
+        if (quantizer < fitted_to_ * std::exp2(-kNear)) job_.restart_fit();
+        if (getenv("GIMDBG"))
+            fprintf(stderr, "FIT q %.3f (before %.3f) %d%s\n", quantizer, fitted_to_, (int)effort,
+                    quantizer < fitted_to_ * std::exp2(-kNear) ? " restart" : "");
         fitted_to_ = parameters_.quantizer = quantizer;
-        return job_.fit(parameters_, effort);
+        GIM_TRY(fitted, job_.fit(parameters_, effort));
+        (void)fitted;
+        GIM_TRY(writer, job_.make_writer(parameters_));
+        return writer->write(quantizer);
+    }
+
+    // How much coarser the quantizer might be, in octaves, for the target and a part of the slack to be met.
+    Result<double> room(const Bytes& bytes) const {
+        if (target_.kind == RateTarget::Kind::kBytes)
+            return std::log(double(bytes.size()) / ((1 - kBytesSlack / 2) * target_.value)) / std::log(kBytesPerOctave);
+        GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
+        if (getenv("GIMDBG")) fprintf(stderr, "  bytes %zu psnr %.3f\n", bytes.size(), comparison.psnr);
+        return (comparison.psnr - target_.value - kPsnrSlack / 2) / kDecibelPerOctave;
     }
 
     // By quick fits.
     Result<double> approach(double quantizer) {
         for (int k = 0; k < kMostApproaches; ++k) {
-            GIM_TRY(fitted, fit(quantizer, CodedFit::Effort::kSearch));
-            (void)fitted;
-            GIM_TRY(writer, job_.make_writer(parameters_));
-            const std::vector<uint8_t> bytes = writer->write(quantizer);
-            double octaves = 0;  // by which the quantizer is too fine
-            if (target_.kind == RateTarget::Kind::kPsnr) {
-                GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
-                octaves = (comparison.psnr - target_.value) / kDecibelPerOctave;
-            } else {
-                octaves = std::log(double(bytes.size()) / target_.value) / std::log(kBytesPerOctave);
-            }
+            GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
+            GIM_TRY(octaves, room(bytes));
             quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
-            if (std::abs(octaves) < kNearEnough) break;
+            if (std::abs(octaves) < kNear) break;
         }
         return quantizer;
+    }
+
+    // Every file is coded with the quantizer that it is fitted to: with one that is a tenth of an octave finer it would be
+    // larger and farther from the surface. So fits go on until one meets the target, and the best of those is taken.
+    Result<Bytes> fit_to_target(double quantizer) {
+        Bytes best;
+        for (int k = 0; k < kMostFits; ++k) {
+            const bool is_far = fitted_to_ == 0 || k == 0 || std::abs(std::log2(quantizer / fitted_to_)) > kNear;
+            GIM_TRY(bytes, fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust));
+            GIM_TRY(octaves, room(bytes));
+            GIM_TRY(is_met, meets_target(bytes));
+            if (is_met && is_better(bytes, best)) best = std::move(bytes);
+            const double slack = target_.kind == RateTarget::Kind::kPsnr ? kPsnrSlack / kDecibelPerOctave
+                                                                         : kBytesSlack / std::log(kBytesPerOctave);
+            if (is_met && std::abs(octaves) <= slack / 2) return best;
+            const double next = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -2.0, 2.0)));
+            if (next == quantizer) break;
+            quantizer = next;
+        }
+        if (!best.empty()) return best;
+        return search(quantizer);
+    }
+
+    Result<bool> meets_target(const Bytes& bytes) const {
+        if (target_.kind == RateTarget::Kind::kBytes) return double(bytes.size()) <= target_.value;
+        GIM_TRY(comparison, compare_file(bytes, reference_, full_));
+        return comparison.psnr >= target_.value;
+    }
+
+    bool is_better(const Bytes& bytes, const Bytes& best) const {
+        if (best.empty()) return true;
+        return target_.kind == RateTarget::Kind::kBytes ? bytes.size() > best.size() : bytes.size() < best.size();
     }
 
     // Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
@@ -115,11 +137,6 @@ class RateSearch {
             if (missing <= 0 || attempt == kMostAttempts) return bytes;
             target.value += missing + 0.01;
         }
-    }
-
-    static double quantizer_of(std::span<const uint8_t> bytes) {
-        const auto info = read_own_info(bytes);
-        return info.ok() ? double{info.value().quantizer} : 0;
     }
 
     const CodingJob& job_;
@@ -234,7 +251,7 @@ Result<Encoded> finish_encoding(const CodingJob& job, Mesh reference, const Tria
 
     describe_file(encoded.bytes, encoded.report);
     encoded.report.times = clock.times();
-    for (const StageTime& time : encoded.report.times) encoded.report.seconds += time.seconds;
+    encoded.report.seconds = clock.seconds();
     return encoded;
 }
 

@@ -26,6 +26,7 @@
 #include "format/fuse.h"
 #include "format/ring.h"
 #include "format/seam.h"
+#include "format/sideband_code.h"
 
 namespace gim {
 
@@ -33,9 +34,31 @@ namespace {
 
 using Coordinates = DetailBasis::Coordinates;
 
-constexpr int kCycles = 3;  // of a final fit, before its last rounds; each, like a search, of these rounds:
-constexpr int kFreeRounds = 4, kHeldRounds = 1;
-constexpr int kLastFreeRounds = 6, kLastHeldRounds = 3;
+// Cycles, then the last rounds; free rounds first, then held ones.
+struct Schedule {
+    struct Part {
+        int free, held;
+    };
+    int cycles;
+    Part last;
+
+    int rounds() const;
+};
+constexpr Schedule::Part kCycle = {4, 1}, kLast = {6, 3};
+int Schedule::rounds() const { return cycles * (kCycle.free + kCycle.held) + last.free + last.held; }
+
+Schedule schedule_of(CodedFit::Effort effort) {
+    switch (effort) {
+        case CodedFit::Effort::kSearch:
+            return {1, {0, 0}};
+        case CodedFit::Effort::kAdjust:
+            return {0, kLast};
+        case CodedFit::Effort::kFinal:
+            break;
+    }
+    return {3, kLast};
+}
+
 constexpr double kDensity = 1.5;         // samples of the reference per face
 constexpr double kBits = 1;              // these two were measured on bunny, horse and feline (spec/rationale.md)
 constexpr double kNarrow = 0.3;          // of a step
@@ -125,7 +148,7 @@ struct Prices {
         const auto ln2 = static_cast<float>(std::log(2.0));
         const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;
         for_all(c.size(), [&](size_t i) {
-            if (free == Free::kNormals && DetailBasis::is_tangential(i)) return;
+            if ((free == Free::kNormals && DetailBasis::is_tangential(i)) || basis.is_copy(i)) return;
             const float narrow = static_cast<float>(kNarrow) * basis.step(i);
             if (i >= DetailBasis::kBase)
                 price[i] = bit * static_cast<float>(kBits) / ln2 / (c[i] * c[i] + narrow * narrow);
@@ -166,6 +189,12 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
+SeamTable seams_of(const GeometryImage& image) {
+    SeamTable seams;
+    (void)build_seam_table(with_coarsest_node_grid(image.sideband), &seams);
+    return seams;
+}
+
 // Per ring sample; the image's sideband is in order (glue_ring has taken it).
 std::vector<uint32_t> classes_of(const GeometryImage& image) {
     std::vector<uint32_t> classes(ring_length(image.side));
@@ -184,6 +213,7 @@ struct CodedFit::Impl {
           fitter(start.positions, reference, gluing, frame, {}),
           first_positions(fitter.positions()),
           side(start.side),
+          seams(seams_of(start)),
           ring_classes(classes_of(start)),
           seed(first_seed) {}
 
@@ -193,9 +223,22 @@ struct CodedFit::Impl {
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
     uint32_t side;
+    SeamTable seams;  // as a file has them
     std::vector<uint32_t> ring_classes;
     uint64_t seed;
     uint64_t rounds = 0;
+    std::vector<Vec3> cycled_positions;  // of the last final fit before its last rounds, in the frame
+    uint64_t cycled_rounds = 0;
+
+    void keep_as_cycled() {
+        cycled_positions = fitter.positions();
+        cycled_rounds = rounds;
+    }
+    void back_to_cycled() {
+        if (cycled_positions.empty()) return;
+        fitter.place(cycled_positions);
+        rounds = cycled_rounds;
+    }
 
     // The samples as interleaved triples in units of the header, not rounded; and back.
     std::vector<float> units(const Header& header) const {
@@ -224,7 +267,7 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(header);
         const std::vector<float> image = units(header);
-        const DetailBasis basis(image, side, coding);
+        const DetailBasis basis(image, side, coding, &seams);
         const Coordinates c = basis.analyse(image);
         const auto unit = static_cast<float>(double{header.step} * frame.scale);  // in the frame
         CoordinateSystem coordinates(system, basis, gluing);
@@ -237,9 +280,9 @@ struct CodedFit::Impl {
 
     // Samples go where a decoder would put them.
     void quantize(const Header& header) {
-        Pyramid<float> bands = analyse<Irreversible97>(units(header), side);
+        Pyramid<float> bands = analyse<Irreversible97>(units(header), side, &seams);
         subtract_middle(&bands, header.bits);
-        std::vector<float> image = quantize_bands(bands, detail_coding_of(header)).image;
+        std::vector<float> image = quantize_bands(bands, detail_coding_of(header), &seams).image;
         for (float& x : image) x += static_cast<float>(1 << (header.bits - 1));
         const size_t ring = ring_classes.size();
         const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
@@ -264,25 +307,20 @@ Result<CodedFit> CodedFit::create(const GeometryImage& start, const Mesh& refere
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
 std::vector<Vec3> CodedFit::run(const Header& header, Effort effort, const Progress& progress) {
-    const bool is_final = effort == Effort::kFinal;
-    const int all = is_final ? kCycles * (kFreeRounds + kHeldRounds) + kLastFreeRounds + kLastHeldRounds
-                             : kFreeRounds + kHeldRounds;
+    const Schedule schedule = schedule_of(effort);
     int done = 0;
-    const auto rounds = [&](int count, Free free) {
-        for (int k = 0; k < count; ++k) {
-            if (progress) progress(Stage::kFit, double(done++) / all);
+    const auto rounds = [&](const Schedule::Part& part) {
+        for (int k = 0; k < part.free + part.held; ++k) {
+            if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
+            const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(header);
             impl_->round(header, free);
         }
     };
-    for (int cycle = 0; cycle < (is_final ? kCycles : 1); ++cycle) {
-        rounds(kFreeRounds, Free::kAll);
-        rounds(kHeldRounds, Free::kNormals);
-    }
-    if (is_final) {
-        rounds(kLastFreeRounds, Free::kAll);
-        rounds(kLastHeldRounds, Free::kNormals);
-    }
+    if (effort == Effort::kAdjust) impl_->back_to_cycled();
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle);
+    if (effort == Effort::kFinal) impl_->keep_as_cycled();
+    rounds(schedule.last);
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
     return positions;

@@ -30,10 +30,11 @@ class CodedFit {
     enum class Effort {
         kSearch,  // finds out about what a quantizer brings
         kFinal,   // and what its file will hold
+        kAdjust,  // the last rounds of the final fit before again, with a quantizer nearby
     };
     // Goes on from where the last call ended (the start, at first). header: of the file to be: units, quantizer,
     // tangential steps and cell area. Returns the samples, equal where glued; steps fold nothing over, the quantizer may.
-    // The same for any number of threads. Cost: of 257 x 257 samples about 0.3 s a round on two cores, 5 or 24 rounds.
+    // The same for any number of threads. Cost: of 257 x 257 samples about 0.3 s a round on two cores, 5, 24 or 9 rounds.
     std::vector<Vec3> run(const Header& header, Effort effort, const Progress& progress = {});
     // The next call goes on from the start again: samples that a coarse quantizer has heaped up do not come apart.
     void restart();

@@ -43,6 +43,11 @@ class StageClock {
         return [this](Stage, double fraction) { report(fraction); };
     }
     const std::vector<StageTime>& times() const { return times_; }
+    double seconds() const {
+        double sum = 0;
+        for (const StageTime& time : times_) sum += time.seconds;
+        return sum;
+    }
 
   private:
     using Clock = std::chrono::steady_clock;

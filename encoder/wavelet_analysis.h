@@ -10,6 +10,7 @@
 
 #include "format/band_code.h"
 #include "format/lifting.h"
+#include "format/rim.h"
 
 namespace gim {
 
@@ -31,23 +32,25 @@ struct Pyramid {
     uint32_t rows_at(uint32_t step) const { return halved(rows, steps() - step); }
 };
 
-// columns, rows: before each step 2 or more.
+// columns, rows: before each step 2 or more. seams: of a square that is cut at its cut-nodes (format/rim.h), 9/7 only.
 template <class Wavelet>
 Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t columns, uint32_t rows,
-                                          uint32_t steps);
+                                          uint32_t steps, const SeamTable* seams = nullptr);
 
 // A square of side 2^j + 1, down to 2 x 2.
 template <class Wavelet>
-Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t side) {
-    return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)));
+Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t side,
+                                          const SeamTable* seams = nullptr) {
+    return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)), seams);
 }
 
 // The image again. The decoder has the inverse that counts (decoder/synthesis.h); this one takes bands as analyse gives them.
 template <class Wavelet>
-std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid);
+std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid,
+                                              const SeamTable* seams = nullptr);
 
 // The transpose of restore<Irreversible97> of a square, as a linear map from bands to images.
-Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side);
+Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const SeamTable* seams = nullptr);
 
 // The bands of levels[index].
 inline LevelBands bands_of(Pyramid<int32_t>& pyramid, uint32_t index) {

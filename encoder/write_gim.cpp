@@ -69,7 +69,10 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
     for (const GeometryImage& image : images) {
         const auto exponent = static_cast<uint32_t>(std::countr_zero(image.side - 1));
         writer.side_exponents_.push_back(static_cast<uint8_t>(exponent));
-        append_sideband(with_coarsest_node_grid(image.sideband), &writer.seams_);
+        const Sideband sideband = with_coarsest_node_grid(image.sideband);
+        append_sideband(sideband, &writer.seams_);
+        writer.seam_tables_.emplace_back();
+        if (build_seam_table(sideband, &writer.seam_tables_.back()) != Status::kOk) return error("its seams are wrong");
         largest = std::max(largest, exponent);
     }
     const uint32_t base = is_grid_side(parameters.base_side) && parameters.base_side > 2
@@ -96,7 +99,9 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
             writer.lossless_.push_back(analyse<Reversible53>(to_units<int32_t>(image.positions, header), image.side));
             subtract_middle(&writer.lossless_.back(), header.bits);
         } else {
-            writer.lossy_.push_back(analyse<Irreversible97>(to_units<float>(image.positions, header), image.side));
+            writer.lossy_.push_back(
+                analyse<Irreversible97>(to_units<float>(image.positions, header), image.side,
+                                        header.tangential > 0 ? &writer.seam_tables_[writer.lossy_.size()] : nullptr));
             subtract_middle(&writer.lossy_.back(), header.bits);
         }
     }
@@ -119,9 +124,10 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         Pyramid<int32_t> bands = header.coding == Coding::kLossless
                                      ? lossless_[i]
-                                     : quantize_bands(lossy_[i], detail_coding_of(header)).bands;
+                                     : quantize_bands(lossy_[i], detail_coding_of(header), &seam_tables_[i]).bands;
         const uint32_t levels = header.level_count_of(i);
-        const auto coded = code_bands(bands, levels, coefficient_kind_of(header));
+        const auto coded =
+            code_bands(bands, levels, coefficient_kind_of(header), header.tangential > 0 ? &seam_tables_[i] : nullptr);
         for (uint32_t k = 0; k < levels; ++k) {
             const uint32_t level = levels - 1 - k;
             if (header.image_count() > 1) append_leb128(coded[k].size(), &sizes[level]);

@@ -45,6 +45,7 @@ class GimWriter final : public FileWriter {
     std::string text_;
     std::vector<Pyramid<int32_t>> lossless_;
     std::vector<Pyramid<float>> lossy_;
+    std::vector<SeamTable> seam_tables_;
 };
 
 // What positions and steps of a file of these images are counted in: a header with bits, origin, step, tangential steps and

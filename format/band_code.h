@@ -13,44 +13,12 @@
 #include <bit>
 #include <cstdint>
 
+#include "format/band.h"
 #include "format/bit_model.h"
+#include "format/rim.h"
 #include "format/trained_models.h"
 
 namespace gim {
-
-enum class Orientation : uint8_t { kHorizontal, kVertical, kDiagonal };  // the direction of high frequency
-
-// rows * columns triples, row-major, without gaps.
-struct Band {
-    int32_t* values = nullptr;
-    uint32_t rows = 0, columns = 0;
-
-    size_t count() const { return size_t{rows} * columns * 3; }
-    int32_t* row(uint32_t r) const { return values + size_t{r} * columns * 3; }
-};
-
-// A run of n samples splits into so many low and high ones (format/lifting.h).
-constexpr uint32_t low_count(uint32_t n) { return n - n / 2; }
-constexpr uint32_t high_count(uint32_t n) { return n / 2; }
-
-// What is left of n samples after so many steps.
-constexpr uint32_t halved(uint32_t n, uint32_t steps) {
-    for (; steps > 0; --steps) n = low_count(n);
-    return n;
-}
-
-// The three bands that lead to an image.
-struct LevelBands {
-    Band horizontal;  // low_count(rows) x high_count(columns)
-    Band vertical;    // high_count(rows) x low_count(columns)
-    Band diagonal;    // high_count(rows) x high_count(columns)
-
-    const Band& of(Orientation orientation) const {
-        return orientation == Orientation::kHorizontal ? horizontal
-               : orientation == Orientation::kVertical ? vertical
-                                                       : diagonal;
-    }
-};
 
 // The adaptive state of one image; it goes on from level to level.
 struct BandModels {
@@ -116,20 +84,24 @@ class BandCoder {
 
     // The coarsest image, 2 x 2 of a square.
     bool code_base(const Band& base) {
-        return code_band(base, {Orientation::kHorizontal, nullptr, nullptr, nullptr, kBaseWeights});
+        return code_band(base, {Orientation::kHorizontal, nullptr, nullptr, nullptr, kBaseWeights, {}});
     }
 
-    // parents: the bands of the next coarser level, or nullptr.
-    bool code_level(const LevelBands& bands, const LevelBands* parents) {
+    // parents: the bands of the next coarser level, or nullptr. Copies of the rim are zero and not coded.
+    bool code_level(const LevelBands& bands, const LevelBands* parents, const SharedRim& rim = {}) {
         const uint32_t columns = bands.horizontal.columns + bands.vertical.columns;
         const uint32_t rows = bands.horizontal.rows + bands.vertical.rows;
         const auto& weights = kBandWeights[static_cast<size_t>(models_.kind)][std::min(columns, rows) >= kFineSide];
         return code_band(bands.horizontal, {Orientation::kHorizontal, parents ? &parents->horizontal : nullptr, nullptr,
-                                            nullptr, weights[0]}) &&
+                                            nullptr, weights[0], rim}) &&
                code_band(bands.vertical, {Orientation::kVertical, parents ? &parents->vertical : nullptr,
-                                          &bands.horizontal, nullptr, weights[1]}) &&
-               code_band(bands.diagonal, {Orientation::kDiagonal, parents ? &parents->diagonal : nullptr,
-                                          &bands.horizontal, &bands.vertical, weights[2]});
+                                          &bands.horizontal, nullptr, weights[1], rim}) &&
+               code_band(bands.diagonal, {Orientation::kDiagonal,
+                                          parents ? &parents->diagonal : nullptr,
+                                          &bands.horizontal,
+                                          &bands.vertical,
+                                          weights[2],
+                                          {}});
     }
 
   private:
@@ -140,6 +112,7 @@ class BandCoder {
         const Band* horizontal = nullptr;
         const Band* vertical = nullptr;
         const BandWeights* weights = nullptr;
+        SharedRim rim;
     };
 
     static constexpr int32_t kNothing[3] = {0, 0, 0};
@@ -303,10 +276,16 @@ bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, ui
     const uint32_t* expected = work_.expected + BandWork::kGuard;
     int32_t* values = band.row(row);
     const bool has_parent = around.parent && row / 2 < around.parent->rows;
+    const bool shared = static_cast<bool>(around.rim), across = around.orientation == Orientation::kVertical;
+    const bool rim_row = shared && !across && (row == 0 || row + 1 == band.rows);
+    const auto on_rim = [&](uint32_t column) {
+        return rim_row || (shared && across && (column == 0 || column + 1 == band.columns));
+    };
     for (uint32_t column = begin; column < end; ++column) {
         const int32_t* parent =
             has_parent && column / 2 < around.parent->columns ? around.parent->row(row / 2) + column / 2 * 3 : kNothing;
         const auto at = static_cast<int32_t>(column * 3);
+        if (on_rim(column) && around.rim.is_copy(around.orientation, row, column)) continue;
         const auto code = [&](uint32_t k, uint32_t set, uint32_t e, bool not_zero) {
             const int32_t i = at + static_cast<int32_t>(k);
             uint32_t magnitude = magnitude_of(values[i]);

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "format/band_code.h"
+#include "format/band.h"
 
 namespace gim {
 
@@ -36,6 +36,8 @@ struct Irreversible97 {
     static constexpr std::array<float, 4> kFactor = {-1.586134342f, -0.052980118f, 0.882911076f, 0.443506852f};
     // Low samples carry this factor inside one level of both directions; outside, a constant image keeps its value.
     static constexpr float kLowGain = 1.513328328f;
+    // The same of one direction, for those at ends, and its inverse.
+    static constexpr float kEndGain = 1.230174105f, kEndLoss = 0.8128931f;
 
     template <Direction D>
     static Sample lift(int step, Sample x, Sample a, Sample b) {
@@ -63,6 +65,62 @@ inline void lift_row(int step, typename Wavelet::Sample* __restrict target, cons
             if constexpr (Wavelet::kSteps > 2)
                 for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(3, target[i], a[i], b[i]);
     }
+}
+
+// On square images whose rim is shared (format/rim.h) the 9/7 keeps the low samples at the ends of a run, but for their gain:
+// linear runs have no details up to their ends, and the rim is transformed by itself. Elsewhere every low sample is lifted.
+struct LiftedLows {
+    size_t begin, end;
+};
+inline LiftedLows lifted_lows(size_t lows, bool keeps_ends) {
+    return keeps_ends ? LiftedLows{1, lows - 1} : LiftedLows{0, lows};
+}
+
+// What an odd step does to a low sample that is kept: the first one brings it to the gain of the others.
+template <class Wavelet, Direction D>
+inline void lift_end(int step, typename Wavelet::Sample* low, size_t width) {
+    if constexpr (Wavelet::kSteps > 2) {
+        if (step != 1) return;
+        constexpr float kFactor = D == Direction::kAnalysis ? Wavelet::kEndGain : Wavelet::kEndLoss;
+        for (size_t i = 0; i < width; ++i) low[i] = low[i] * kFactor;
+    }
+}
+
+// What of a run is kept: nothing, its ends, or inner low samples, too.
+struct KeepsNone {
+    static constexpr bool kInner = false;
+    bool ends() const { return false; }
+    bool operator()(size_t) const { return false; }
+};
+struct KeepsEnds : KeepsNone {
+    bool ends() const { return true; }
+};
+
+// An odd step on a run of triples. high has room for a triple before and behind.
+template <class Wavelet, Direction D, class Keeps>
+inline void lift_lows(int step, size_t lows, size_t highs, typename Wavelet::Sample* low,
+                      typename Wavelet::Sample* high, const Keeps& keeps) {
+    for (size_t k = 0; k < 3; ++k) {
+        *(high + k - 3) = high[k];
+        high[3 * highs + k] = high[3 * (highs - 1) + k];
+    }
+    const auto lift = [&](size_t from, size_t to) {
+        if (from < to)
+            lift_row<Wavelet, D>(step, low + 3 * from, high + 3 * from - 3, high + 3 * from, 3 * (to - from));
+    };
+    const auto [begin, end] = lifted_lows(lows, keeps.ends());
+    if (begin > 0) lift_end<Wavelet, D>(step, low, 3);
+    size_t from = begin;
+    if constexpr (Keeps::kInner) {
+        for (size_t i = begin; i < end; ++i) {
+            if (!keeps(i)) continue;
+            lift(from, i);
+            lift_end<Wavelet, D>(step, low + 3 * i, 3);
+            from = i + 1;
+        }
+    }
+    lift(from, end);
+    if (end < lows) lift_end<Wavelet, D>(step, low + 3 * end, 3);
 }
 
 // L2 norms of the 9/7 synthesis functions, `depth` levels (1..14) below full resolution: of the low band, of the two

@@ -41,6 +41,7 @@ struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
     bool even = false;
+    const CLI::Option* size = nullptr;
     std::optional<double> psnr, quality;
     std::optional<uint64_t> bytes;
     uint32_t normals = 0;
@@ -69,9 +70,11 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
-    sub->add_option("--size", a.command.options.side, "Samples per side; the next size has four times the samples")
-        ->check(side_validator(9, 4097))
-        ->capture_default_str();
+    a.size =
+        sub->add_option("--size", a.command.options.side,
+                        "Samples per side; the next size has four times the samples; without it, 257, or 129 where "
+                        "that meets --psnr or --bytes better")
+            ->check(side_validator(9, 4097));
     sub->add_option("--node-side", a.command.options.node_side,
                     "Coarsest level that stays closed: the cut's nodes lie on a grid of this side")
         ->check(side_validator(3, 4097))
@@ -149,6 +152,7 @@ void apply_planes(EncodeArguments& a) {
 }
 
 void apply_rate(EncodeArguments& a) {
+    a.command.options.try_half_side = a.size->count() == 0;
     RateTarget& rate = a.command.options.rate;
     if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
     if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};

@@ -31,6 +31,13 @@ std::vector<float> noise(size_t count, uint64_t seed) {
     return values;
 }
 
+// Of the torus: opposite sides are glued.
+SeamTable torus_seams() {
+    SeamTable seams;
+    EXPECT_EQ(build_seam_table(torus_image(kSide, 700, 300).sideband, &seams), Status::kOk);
+    return seams;
+}
+
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
     double sum = 0;
     for (size_t i = 0; i < a.size(); ++i) sum += double{a[i]} * double{b[i]};
@@ -55,6 +62,36 @@ TEST(DetailBasis, TransposedIsTheAdjointOfSynthesis) {
     for (uint64_t seed = 1; seed < 6; ++seed) {
         const std::vector<float> c = noise(basis.size(), seed), x = noise(image.size(), seed + 100);
         const std::vector<float> synthesized = basis.synthesize(c);
+        const double length = std::sqrt(dot(synthesized, synthesized) * dot(x, x));
+        EXPECT_NEAR(dot(synthesized, x), dot(c, basis.transposed(x)), 1e-6 * length);
+    }
+}
+
+TEST(DetailBasis, GluedImagesComeBackFromWhatMatesShare) {
+    const std::vector<float> image = torus_units();
+    const SeamTable seams = torus_seams();
+    const DetailBasis basis(image, kSide, kCoding, &seams);
+    const DetailBasis::Coordinates c = basis.analyse(image);
+    size_t copies = 0;
+    for (size_t i = 0; i < c.size(); ++i) {
+        copies += basis.is_copy(i);
+        if (basis.is_copy(i)) {
+            ASSERT_EQ(c[i], 0);
+        }
+    }
+    EXPECT_EQ(copies, 3u * 2 * (kSide - 2));  // a detail for each sample between the cut-nodes of two of the sides
+    const std::vector<float> back = basis.synthesize(c);
+    for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(back[i], image[i], 4e-3f);
+}
+
+TEST(DetailBasis, TransposedIsTheAdjointOfSynthesisWithSharedRims) {
+    const std::vector<float> image = torus_units();
+    const SeamTable seams = torus_seams();
+    const DetailBasis basis(image, kSide, kCoding, &seams);
+    for (uint64_t seed = 1; seed < 6; ++seed) {
+        std::vector<float> c = noise(basis.size(), seed);
+        for (size_t i = 0; i < c.size(); ++i) c[i] *= !basis.is_copy(i);
+        const std::vector<float> x = noise(image.size(), seed + 100), synthesized = basis.synthesize(c);
         const double length = std::sqrt(dot(synthesized, synthesized) * dot(x, x));
         EXPECT_NEAR(dot(synthesized, x), dot(c, basis.transposed(x)), 1e-6 * length);
     }

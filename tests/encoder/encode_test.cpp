@@ -202,6 +202,26 @@ TEST(Encode, PsnrTargetIsMetByFilesFittedToTheCodec) {
     }
 }
 
+TEST(Encode, OfTwoSidesTheBetterFileIsKept) {
+    const TriangleMesh mesh = bumpy_sphere();
+    for (const RateTarget rate : {RateTarget{RateTarget::Kind::kPsnr, 50}, RateTarget{RateTarget::Kind::kBytes, 900}}) {
+        EncodeOptions options = coded_options();
+        options.rate = rate;
+        const Encoded full = encode(mesh, options).value();
+        EncodeOptions smaller = options;
+        smaller.side = options.side / 2 + 1;
+        smaller.node_side = std::min(smaller.node_side, smaller.side);
+        const Encoded half = encode(mesh, smaller).value();
+        options.try_half_side = true;
+        const Encoded kept = encode(mesh, options).value();
+        const bool half_is_better = rate.kind == RateTarget::Kind::kPsnr
+                                        ? half.bytes.size() < full.bytes.size()
+                                        : half.report.error.psnr > full.report.error.psnr;
+        EXPECT_EQ(kept.bytes, half_is_better ? half.bytes : full.bytes);
+        EXPECT_EQ(kept.report.side, half_is_better ? smaller.side : options.side);
+    }
+}
+
 // A fit to too coarse a quantizer heaps samples up for good: the search has to begin anew.
 TEST(Encode, TargetsOfAHandfulOfBytesAreMetByFilesFittedToTheCodec) {
     const TriangleMesh mesh = bumpy_sphere();

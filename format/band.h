@@ -1,0 +1,43 @@
+// Bands of integer triples, and how a run of samples splits into them.  spec/gim-format.md, "Bands".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gim {
+
+enum class Orientation : uint8_t { kHorizontal, kVertical, kDiagonal };  // the direction of high frequency
+
+// rows * columns triples, row-major, without gaps.
+struct Band {
+    int32_t* values = nullptr;
+    uint32_t rows = 0, columns = 0;
+
+    size_t count() const { return size_t{rows} * columns * 3; }
+    int32_t* row(uint32_t r) const { return values + size_t{r} * columns * 3; }
+};
+
+// A run of n samples splits into so many low and high ones (format/lifting.h).
+constexpr uint32_t low_count(uint32_t n) { return n - n / 2; }
+constexpr uint32_t high_count(uint32_t n) { return n / 2; }
+
+// What is left of n samples after so many steps.
+constexpr uint32_t halved(uint32_t n, uint32_t steps) {
+    for (; steps > 0; --steps) n = low_count(n);
+    return n;
+}
+
+// The three bands that lead to an image.
+struct LevelBands {
+    Band horizontal;  // low_count(rows) x high_count(columns)
+    Band vertical;    // high_count(rows) x low_count(columns)
+    Band diagonal;    // high_count(rows) x high_count(columns)
+
+    const Band& of(Orientation orientation) const {
+        return orientation == Orientation::kHorizontal ? horizontal
+               : orientation == Orientation::kVertical ? vertical
+                                                       : diagonal;
+    }
+};
+
+}  // namespace gim
