@@ -57,9 +57,6 @@ class RateSearch {
     // Goes on from the fit before, unless that was a coarser one: what it let go of may not be found again.
     Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {
         if (quantizer < fitted_to_ * std::exp2(-kNear)) job_.restart_fit();
-        if (getenv("GIMDBG"))
-            fprintf(stderr, "FIT q %.3f (before %.3f) %d%s\n", quantizer, fitted_to_, (int)effort,
-                    quantizer < fitted_to_ * std::exp2(-kNear) ? " restart" : "");
         fitted_to_ = parameters_.quantizer = quantizer;
         GIM_TRY(fitted, job_.fit(parameters_, effort));
         (void)fitted;
@@ -67,12 +64,16 @@ class RateSearch {
         return writer->write(quantizer);
     }
 
+    double slack_in_octaves() const {
+        return target_.kind == RateTarget::Kind::kPsnr ? kPsnrSlack / kDecibelPerOctave
+                                                       : kBytesSlack / std::log(kBytesPerOctave);
+    }
+
     // How much coarser the quantizer might be, in octaves, for the target and a part of the slack to be met.
     Result<double> room(const Bytes& bytes) const {
         if (target_.kind == RateTarget::Kind::kBytes)
             return std::log(double(bytes.size()) / ((1 - kBytesSlack / 2) * target_.value)) / std::log(kBytesPerOctave);
         GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
-        if (getenv("GIMDBG")) fprintf(stderr, "  bytes %zu psnr %.3f\n", bytes.size(), comparison.psnr);
         return (comparison.psnr - target_.value - kPsnrSlack / 2) / kDecibelPerOctave;
     }
 
@@ -91,15 +92,15 @@ class RateSearch {
     // larger and farther from the surface. So fits go on until one meets the target, and the best of those is taken.
     Result<Bytes> fit_to_target(double quantizer) {
         Bytes best;
+        double final_for = 0;  // what the last final fit was for
         for (int k = 0; k < kMostFits; ++k) {
-            const bool is_far = fitted_to_ == 0 || k == 0 || std::abs(std::log2(quantizer / fitted_to_)) > kNear;
+            const bool is_far = k == 0 || std::abs(std::log2(quantizer / final_for)) > kNear;
+            if (is_far) final_for = quantizer;
             GIM_TRY(bytes, fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust));
             GIM_TRY(octaves, room(bytes));
             GIM_TRY(is_met, meets_target(bytes));
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
-            const double slack = target_.kind == RateTarget::Kind::kPsnr ? kPsnrSlack / kDecibelPerOctave
-                                                                         : kBytesSlack / std::log(kBytesPerOctave);
-            if (is_met && std::abs(octaves) <= slack / 2) return best;
+            if (is_met && std::abs(octaves) <= slack_in_octaves() / 2) return best;
             const double next = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -2.0, 2.0)));
             if (next == quantizer) break;
             quantizer = next;

@@ -70,7 +70,8 @@ class SharedRim {
 
   private:
     static GridPoint sample_of(Orientation orientation, uint32_t row, uint32_t column) {
-        return {2 * row + (orientation != Orientation::kHorizontal), 2 * column + (orientation != Orientation::kVertical)};
+        return {2 * row + (orientation != Orientation::kHorizontal),
+                2 * column + (orientation != Orientation::kVertical)};
     }
 
     const uint32_t* source_ = nullptr;
