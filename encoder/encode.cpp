@@ -1,5 +1,6 @@
 // Triangle mesh -> .gim: the driver. Its lines are the stages; those of the layouts are in single_chart.cpp and
 // multi_chart.cpp, those that every kind of input shares in finish_encoding.cpp.
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,17 +27,36 @@ Result<Encoded> run_squares(const Mesh& mesh, const TriangleMesh& input, const E
 }
 
 // Up to here half the side was better on some of the models that were measured (spec/rationale.md).
-constexpr double kMostPsnrOfHalfSide = 71;
-
-bool worth_half_side(const Encoded& full, const EncodeOptions& options) {
-    const bool has_target =
-        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
-    return options.try_half_side && has_target && options.side >= 65 && full.report.error.psnr <= kMostPsnrOfHalfSide;
-}
+constexpr double kMostPsnrOfSmallerSides = 71;
+constexpr uint32_t kLeastSideToHalve = 65;
 
 bool is_better(const Encoded& a, const Encoded& b, const RateTarget& rate) {
     return rate.kind == RateTarget::Kind::kBytes ? a.report.error.psnr > b.report.error.psnr
                                                  : a.bytes.size() < b.bytes.size();
+}
+
+// The file of the side that is asked for or, where that is allowed and the target coarse, of the half of it as long as halving
+// makes it better. Pictures are those of the first.
+template <class Run>
+Result<Encoded> best_of_sides(const Run& run, EncodeOptions options, const StageClock& clock,
+                              const Observer& observer) {
+    auto best = run(options, observer);
+    const bool has_target =
+        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
+    if (!options.try_smaller_sides || !has_target) return best;
+    while (best.ok() && best.value().report.error.psnr <= kMostPsnrOfSmallerSides &&
+           options.side >= kLeastSideToHalve) {
+        options.side = (options.side - 1) / 2 + 1;
+        options.node_side = std::min(options.node_side, options.side);
+        auto half = run(options, {});
+        if (!half.ok() || !is_better(half.value(), best.value(), options.rate)) break;
+        best = std::move(half);
+    }
+    if (best.ok()) {
+        best.value().report.times = clock.times();
+        best.value().report.seconds = clock.seconds();
+    }
+    return best;
 }
 
 Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& options, const Progress& progress,
@@ -62,18 +82,11 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
         const CodingJob job = code_charts(charts, report);
         return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
     }
-    auto full = run_squares(cleaned.mesh, input, options, clock, observer, encoded);
-    if (!full.ok() || !worth_half_side(full.value(), options)) return full;
-    EncodeOptions half = options;
-    half.side = (options.side - 1) / 2 + 1;
-    half.node_side = std::min(half.node_side, half.side);
-    auto smaller = run_squares(cleaned.mesh, input, half, clock, {}, std::move(encoded));
-    if (!smaller.ok() || !is_better(smaller.value(), full.value(), options.rate)) {
-        full.value().report.times = clock.times();
-        full.value().report.seconds = clock.seconds();
-        return full;
-    }
-    return smaller;
+    return best_of_sides(
+        [&](const EncodeOptions& o, const Observer& shown) {
+            return run_squares(cleaned.mesh, input, o, clock, shown, encoded);
+        },
+        options, clock, observer);
 }
 
 }  // namespace

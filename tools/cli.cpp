@@ -72,7 +72,7 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         ->default_str("gim");
     a.size =
         sub->add_option("--size", a.command.options.side,
-                        "Samples per side; the next size has four times the samples; without it, 257, or 129 where "
+                        "Samples per side; the next size has four times the samples; without it, 257, or less where "
                         "that meets --psnr or --bytes better")
             ->check(side_validator(9, 4097));
     sub->add_option("--node-side", a.command.options.node_side,
@@ -152,7 +152,7 @@ void apply_planes(EncodeArguments& a) {
 }
 
 void apply_rate(EncodeArguments& a) {
-    a.command.options.try_half_side = a.size->count() == 0;
+    a.command.options.try_smaller_sides = a.size->count() == 0;
     RateTarget& rate = a.command.options.rate;
     if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
     if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};

@@ -213,7 +213,7 @@ TEST(Encode, OfTwoSidesTheBetterFileIsKept) {
         smaller.side = options.side / 2 + 1;
         smaller.node_side = std::min(smaller.node_side, smaller.side);
         const Encoded half = encode(mesh, smaller).value();
-        options.try_half_side = true;
+        options.try_smaller_sides = true;
         const Encoded kept = encode(mesh, options).value();
         const bool half_is_better = rate.kind == RateTarget::Kind::kPsnr
                                         ? half.bytes.size() < full.bytes.size()

@@ -142,9 +142,9 @@ struct EncodeOptions {
     Layout layout = Layout::kGim;
     uint32_t side = 257;  // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory.
                           // Of several components the largest gets it, the others less, by their area
-    bool try_half_side =
-        false;                 // kGim with a target of PSNR or bytes: where that is coarse, codes an image of half the
-                               // side as well and keeps the better file; about 1.4x time
+    // kGim with a target of PSNR or bytes: where that is coarse, also codes images of half the side, and so on as long as
+    // that is better, and keeps the best file. About 1.5 times the time.
+    bool try_smaller_sides = false;
     uint32_t samples = 66049;  // kMcgim: bound on width * height
     uint32_t charts = 0;      // kMcgim: how many are asked for, 0: chosen by the shape; more come out where topology or
                               // flattening needs them
