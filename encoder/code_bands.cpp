@@ -160,7 +160,7 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
         if (!coding.in_frames) continue;
         decoded.levels[0] = {std::move(horizontal.details), std::move(vertical.details), std::move(diagonal.details)};
         copy_details(rim.view(), decoded.levels[0], decoded.columns);
-        decoded.base = restore<Irreversible97>(decoded, coding.in_frames ? seams : nullptr);
+        decoded.base = restore<Irreversible97>(decoded, seams);
     }
     return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
 }

@@ -38,10 +38,7 @@ class RateSearch {
 
     Result<std::vector<uint8_t>> run(double quantizer) {
         if (job_.fit == nullptr || target_.kind == RateTarget::Kind::kLossless) return search(quantizer);
-        if (target_.kind == RateTarget::Kind::kQuality) {
-            GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kFinal));
-            return bytes;
-        }
+        if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
         GIM_TRY(nearer, approach(quantizer));
         return fit_to_target(nearer);
     }

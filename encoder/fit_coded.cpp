@@ -189,17 +189,16 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
+// The image's sideband is in order (glue_ring has taken it).
 SeamTable seams_of(const GeometryImage& image) {
     SeamTable seams;
     (void)build_seam_table(with_coarsest_node_grid(image.sideband), &seams);
     return seams;
 }
 
-// Per ring sample; the image's sideband is in order (glue_ring has taken it).
-std::vector<uint32_t> classes_of(const GeometryImage& image) {
-    std::vector<uint32_t> classes(ring_length(image.side));
-    SeamTable seams;
-    if (build_seam_table(image.sideband, &seams) == Status::kOk) gim::ring_classes(seams, image.side, classes);
+std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
+    std::vector<uint32_t> classes(ring_length(side));
+    gim::ring_classes(seams, side, classes);
     return classes;
 }
 
@@ -214,7 +213,7 @@ struct CodedFit::Impl {
           first_positions(fitter.positions()),
           side(start.side),
           seams(seams_of(start)),
-          ring_classes(classes_of(start)),
+          ring_classes(classes_of(seams, start.side)),
           seed(first_seed) {}
 
     GridGluing gluing;

@@ -99,9 +99,8 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
             writer.lossless_.push_back(analyse<Reversible53>(to_units<int32_t>(image.positions, header), image.side));
             subtract_middle(&writer.lossless_.back(), header.bits);
         } else {
-            writer.lossy_.push_back(
-                analyse<Irreversible97>(to_units<float>(image.positions, header), image.side,
-                                        header.tangential > 0 ? &writer.seam_tables_[writer.lossy_.size()] : nullptr));
+            writer.lossy_.push_back(analyse<Irreversible97>(to_units<float>(image.positions, header), image.side,
+                                                            writer.shared_seams(writer.lossy_.size())));
             subtract_middle(&writer.lossy_.back(), header.bits);
         }
     }
@@ -124,10 +123,9 @@ std::vector<uint8_t> GimWriter::write(double quantizer) const {
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         Pyramid<int32_t> bands = header.coding == Coding::kLossless
                                      ? lossless_[i]
-                                     : quantize_bands(lossy_[i], detail_coding_of(header), &seam_tables_[i]).bands;
+                                     : quantize_bands(lossy_[i], detail_coding_of(header), shared_seams(i)).bands;
         const uint32_t levels = header.level_count_of(i);
-        const auto coded =
-            code_bands(bands, levels, coefficient_kind_of(header), header.tangential > 0 ? &seam_tables_[i] : nullptr);
+        const auto coded = code_bands(bands, levels, coefficient_kind_of(header), shared_seams(i));
         for (uint32_t k = 0; k < levels; ++k) {
             const uint32_t level = levels - 1 - k;
             if (header.image_count() > 1) append_leb128(coded[k].size(), &sizes[level]);

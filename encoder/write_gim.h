@@ -46,6 +46,10 @@ class GimWriter final : public FileWriter {
     std::vector<Pyramid<int32_t>> lossless_;
     std::vector<Pyramid<float>> lossy_;
     std::vector<SeamTable> seam_tables_;
+    // Of an image whose mates share their details; else null.
+    const SeamTable* shared_seams(size_t image) const {
+        return header_.tangential > 0 ? &seam_tables_[image] : nullptr;
+    }
 };
 
 // What positions and steps of a file of these images are counted in: a header with bits, origin, step, tangential steps and

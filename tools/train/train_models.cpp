@@ -37,14 +37,13 @@ constexpr double kLeastWeight = 1e-3;
 struct Level {
     uint32_t columns = 0, rows = 0;  // of the image that they lead to
     std::vector<int32_t> values[3];
-    std::vector<uint32_t> sources;  // rim_sources, where mates share their details
+    OwnSharedRim rim{nullptr, 0};  // where mates share their details
 
     LevelBands bands() {
         return {{values[0].data(), low_count(rows), high_count(columns)},
                 {values[1].data(), high_count(rows), low_count(columns)},
                 {values[2].data(), high_count(rows), high_count(columns)}};
     }
-    SharedRim rim() const { return sources.empty() ? SharedRim() : SharedRim(sources.data(), columns); }
 };
 struct Image {
     CoefficientKind kind = CoefficientKind::kPlain;
@@ -82,7 +81,8 @@ bool code_levels(BandCoder<Coder>& coder, Image& image, size_t begin, size_t end
     for (size_t l = begin; l < end; ++l) {
         LevelBands parents;
         if (l > 0) parents = image.levels[l - 1].bands();
-        if (!coder.code_level(image.levels[l].bands(), l > 0 ? &parents : nullptr, image.levels[l].rim())) return false;
+        if (!coder.code_level(image.levels[l].bands(), l > 0 ? &parents : nullptr, image.levels[l].rim.view()))
+            return false;
     }
     return true;
 }
@@ -111,10 +111,7 @@ Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
     if (header.tangential > 0) {
         SeamTable seams;
         if (Status s = read_seams(header, file, 0, &seams); s != Status::kOk) return s;
-        for (Level& level : positions.levels) {
-            level.sources.resize(ring_length(level.columns));
-            rim_sources(seams, level.columns, level.sources);
-        }
+        for (Level& level : positions.levels) level.rim = OwnSharedRim(&seams, level.columns);
     }
     Work work(header.side(0));
     size_t done = 0;
@@ -223,7 +220,7 @@ std::vector<Event> events_of(std::vector<Image>& images, CoefficientKind kind, b
                         column |= 7;
                         continue;
                     }
-                    if (image.levels[l].rim().is_copy(orientation, row, column)) continue;
+                    if (image.levels[l].rim.view().is_copy(orientation, row, column)) continue;
                     for (uint32_t k = later ? 1 : 0; k < (later ? 3u : 1u); ++k)
                         events.push_back(event_at(level, parents, orientation, row, column, k));
                 }
