@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "encoder/result.h"
+#include "format/seam.h"
 
 namespace gim {
 
 namespace {
 
-// Shortest cut-path on the node grid. Two units keep a sample between any two cut-nodes; a path that returns to its own
-// cut-node needs a third, or its two halves would be the same edge.
-constexpr uint32_t kLeastUnits = 2, kLeastLoopUnits = 3;
-// The node grid is refined when the least lengths alone take more than this part of the ring.
-constexpr double kMostReserved = 0.75;
+// Shortest cut-path on the node grid. Of two paths between the same cut-nodes one needs a second edge, and a path that returns
+// to its own cut-node a third, or two edges would be the same.
+constexpr uint32_t kLeastUnits = 1, kLeastParallelUnits = 2, kLeastLoopUnits = 3;
 
 // A cut-path with its mate, or an input boundary on its own.
 struct PathPair {
@@ -39,22 +40,34 @@ double path_length(const OpenedMesh& opened, size_t k) {
 
 std::vector<PathPair> pair_paths(const OpenedMesh& opened) {
     std::vector<PathPair> pairs;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> between;  // how many pairs of paths join these two cut-nodes
     for (uint32_t k = 0; k < opened.paths.size(); ++k) {
         const BoundaryPath& path = opened.paths[k];
         if (path.mate >= 0 && static_cast<uint32_t>(path.mate) < k) continue;
         const bool loop = path.begin_node == path.end_node;
         pairs.push_back({k, path.mate >= 0 ? 2u : 1u, path_length(opened, k), loop ? kLeastLoopUnits : kLeastUnits});
+        ++between[std::minmax(path.begin_node, path.end_node)];
+    }
+    for (PathPair& p : pairs) {
+        const BoundaryPath& path = opened.paths[p.path];
+        if (between[std::minmax(path.begin_node, path.end_node)] > 1) p.least = std::max(p.least, kLeastParallelUnits);
     }
     return pairs;
+}
+
+double ring_length(const std::vector<PathPair>& pairs) {
+    double length = 0;
+    for (const PathPair& p : pairs) length += p.copies * p.length;
+    return length;
 }
 
 // Gives every pair its share of `total` units, at least its least; largest remainders first. False when there are too
 // few.
 bool allot(std::vector<PathPair>& pairs, uint32_t total) {
-    double length = 0;
+    const double length = ring_length(pairs);
     uint64_t reserved = 0;
-    for (const PathPair& p : pairs) length += p.copies * p.length, reserved += uint64_t{p.copies} * p.least;
-    if (static_cast<double>(reserved) > (pairs.size() == 1 ? 1.0 : kMostReserved) * total) return false;
+    for (const PathPair& p : pairs) reserved += uint64_t{p.copies} * p.least;
+    if (reserved > total) return false;
 
     const auto ideal = [&](const PathPair& p) { return length > 0 ? total * p.length / length : 0.0; };
     int64_t missing = total;
@@ -77,6 +90,15 @@ bool allot(std::vector<PathPair>& pairs, uint32_t total) {
     return true;
 }
 
+// The part of the ring that pairs have got beyond their shares.
+double excess(const std::vector<PathPair>& pairs, uint32_t total) {
+    const double length = ring_length(pairs);
+    if (!(length > 0)) return 0;
+    double units = 0;
+    for (const PathPair& p : pairs) units += p.copies * std::max(0.0, p.units - total * p.length / length);
+    return units / total;
+}
+
 // Valence-1 cut-nodes: where a path is followed by its own mate.
 std::vector<uint32_t> leaf_offsets(const std::vector<CutPath>& paths) {
     std::vector<uint32_t> leaves;
@@ -88,29 +110,41 @@ std::vector<uint32_t> leaf_offsets(const std::vector<CutPath>& paths) {
     return leaves;
 }
 
+// Whether the node grid itself, glued so, is a surface. All finer levels are if it is.
+bool is_closed(const Sideband& sideband) {
+    SeamTable seams;
+    return sideband.paths.size() <= kMaxCutPaths && build_seam_table(sideband, &seams) == Status::kOk &&
+           level_is_closed(seams, sideband.node_side);
+}
+
 // Rotates the layout so that every leaf is as far from the square's corners as possible; false if one must lie on a
-// corner.
+// corner, or if no rotation is closed.
 bool choose_start(Sideband& sideband) {
     const uint32_t quarter = sideband.node_side - 1;
     const std::vector<uint32_t> leaves = leaf_offsets(sideband.paths);
-    uint32_t best_distance = 0;
+    std::vector<std::pair<uint32_t, uint32_t>> starts;  // farthest first
     for (uint32_t start = 0; start < quarter; ++start) {
         uint32_t distance = quarter;
         for (const uint32_t leaf : leaves) {
             const uint32_t past = (start + leaf) % quarter;
             distance = std::min({distance, past, quarter - past});
         }
-        if (distance <= best_distance) continue;
-        best_distance = distance;
-        sideband.start = start;
+        if (distance > 0) starts.push_back({quarter - distance, start});
     }
-    return best_distance > 0;
+    std::sort(starts.begin(), starts.end());
+    for (const auto& [nearness, start] : starts) {
+        sideband.start = start;
+        if (is_closed(sideband)) return true;
+    }
+    return false;
 }
 
 Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& options) {
     std::vector<PathPair> pairs = pair_paths(opened);
     for (uint32_t node_side = options.node_side; node_side <= options.side; node_side = 2 * node_side - 1) {
-        if (!allot(pairs, 4 * (node_side - 1))) continue;
+        const uint32_t total = 4 * (node_side - 1);
+        if (!allot(pairs, total)) continue;
+        if (excess(pairs, total) > options.most_excess && pairs.size() > 1 && node_side < options.side) continue;
         Sideband sideband{node_side, 0, std::vector<CutPath>(opened.paths.size())};
         for (const PathPair& p : pairs) {
             const int32_t mate = opened.paths[p.path].mate;

@@ -4,8 +4,8 @@
 //
 // Each cut-path gets a length proportional to its length on the surface, in whole units of the node grid (the coarsest
 // intended mip level), so that cut-nodes are grid points of every level; mates get equal lengths. We differ from the
-// paper in that the unit is that of the node grid, and that the node grid is refined when it has too few units for the
-// cut.
+// paper in that the unit is that of the node grid, and that the node grid is refined when whole units would give short
+// cut-paths too much of the boundary.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ namespace gim {
 struct BoundaryMapOptions {
     uint32_t side = 257;      // samples per side of the image, 2^j + 1
     uint32_t node_side = 17;  // coarsest grid on which cut-nodes should lie, 2^i + 1 <= side; raised when too coarse
+    double most_excess = 0.1;  // part of the ring that cut-paths may have beyond their shares: what makes a grid too coarse
 };
 
 // The opened mesh with its boundary laid out. Edges that span a corner of the square have been split there (with their

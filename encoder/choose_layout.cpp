@@ -11,8 +11,10 @@ namespace {
 double efficiency_of_squares(const Mesh& mesh, EncodeOptions options, StageClock& clock) {
     options.fit = FitStrength::kOff;
     options.density = false;
+    options.rate = {};
     EncodeReport report;
-    return make_square_images(mesh, options, clock, {}, report).ok() ? report.stretch_efficiency : 0;
+    Excesses excesses;
+    return make_square_images(mesh, options, clock, {}, report, excesses).ok() ? report.stretch_efficiency : 0;
 }
 
 double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {

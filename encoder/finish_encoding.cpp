@@ -49,7 +49,6 @@ class RateSearch {
     static constexpr double kNear = 0.25;       // octaves of the quantizer that a fit can go on over
     static constexpr double kPsnrSlack = 0.12;  // dB above the target that are good enough
     static constexpr double kBytesSlack = 0.01;
-    static constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
 
     // Goes on from the fit before, unless that was a coarser one: what it let go of may not be found again.
     Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {

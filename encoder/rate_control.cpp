@@ -27,8 +27,8 @@ std::string decimal(double value) {
 
 double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((75 - quality) / 10 + int(bits) - 12); }
 
-// About 6 dB per halving: the first guess after the first measurement, and the safeguard of the secant afterwards.
-constexpr double kDecibelPerOctave = 6;
+// About 6 dB per halving without a fit: the first guess after the first measurement, and the safeguard of the secant afterwards.
+constexpr double kPlainDecibelPerOctave = 6;
 
 Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
     double fine = kFinest - 1, coarse = kCoarsest + 1;  // judged good enough / too coarse so far, as logarithms
@@ -55,7 +55,7 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
             const double part = std::clamp((fine_psnr - aim) / (fine_psnr - coarse_psnr), 0.1, 0.9);
             at = fine + part * (coarse - fine);
         } else {
-            const double step = (psnr - target) / kDecibelPerOctave;
+            const double step = (psnr - target) / kPlainDecibelPerOctave;
             at = std::clamp(at + (step >= 0 ? std::max(step, 0.05) : std::min(1.3 * step, -0.1)), kFinest, kCoarsest);
         }
     }

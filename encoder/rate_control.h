@@ -14,6 +14,9 @@ namespace gim {
 // PSNR, in dB, of the surface that a file decodes to. Must be the same for the same bytes.
 using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 
+// What an octave of the quantizer changes in files that are fitted to it (encoder/fit_coded.h), about.
+inline constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
+
 // A complete file that meets the target:
 //   lossless  the quantized images are kept exactly
 //   quality   no search: 75 is a step of 8 quantization steps of a 12-bit quantizer, 10 more halve it

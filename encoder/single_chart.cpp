@@ -48,10 +48,10 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 
 }  // namespace
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer) {
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, double most_excess,
+                                        StageClock& clock, const Observer& observer) {
     SingleChart chart;
-    const BoundaryMapOptions square{options.side, options.node_side};
+    const BoundaryMapOptions square{options.side, options.node_side, most_excess};
 
     clock.begin(Stage::kCut);
     const Mesh fine = refine_large_faces(mesh, largest_face(options.side) * surface_area(mesh));

@@ -18,8 +18,8 @@ struct SingleChart {
     uint64_t folds_before_fit = 0;
 };
 
-// In: a clean connected mesh. `clock` takes the time of each stage, `observer` the states on the way.
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer = {});
+// In: a clean connected mesh. most_excess: BoundaryMapOptions. `clock` takes the time of each stage, `observer` the states on the way.
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, double most_excess,
+                                        StageClock& clock, const Observer& observer = {});
 
 }  // namespace gim

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "encoder/coding_trial.h"
+#include "encoder/boundary_map.h"
 #include "encoder/refine.h"
 #include "encoder/single_chart.h"
 #include "encoder/topology_summary.h"
@@ -24,14 +28,66 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
     return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
 }
 
+// The first is for all images. Cut-nodes on a coarse grid code better, and so do maps that give every cut-path its share; which
+// counts for more is different from surface to surface, and the search for the cut takes other ways besides.
+constexpr double kExcesses[] = {BoundaryMapOptions{}.most_excess, 0.4, 0.03};
+
 // A component whose cut needs more room than its area deserves gets it.
-Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most, StageClock& clock,
-                                     const Observer& observer) {
+Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most, double most_excess,
+                                     StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {
         options.node_side = std::min(options.node_side, options.side);
-        auto chart = make_geometry_image(mesh, options, clock, observer);
+        auto chart = make_geometry_image(mesh, options, most_excess, clock, observer);
         if (chart.ok() || options.side >= most) return chart;
     }
+}
+
+// A choice is made for what a file is fitted to.
+bool may_choose(const EncodeOptions& options) {
+    const bool has_target =
+        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
+    return has_target && options.fit == FitStrength::kAuto;
+}
+
+struct Choice {
+    SingleChart chart;
+    double most_excess;
+};
+
+// The one whose image costs fewest bytes when coded; nothing where none can be made.
+std::optional<Choice> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+    CodingTrial trial(mesh, options);
+    std::vector<Choice> choices;
+    size_t best = 0;
+    double fewest = std::numeric_limits<double>::infinity();
+    for (const double most_excess : kExcesses) {
+        auto chart = make_geometry_image(mesh, options, most_excess, clock);
+        if (!chart.ok()) continue;
+        const SingleChart& now = chart.value();
+        const bool is_known = std::any_of(choices.begin(), choices.end(), [&](const Choice& other) {
+            return other.chart.cut_length == now.cut_length && other.chart.image.sideband == now.image.sideband;
+        });
+        if (is_known) continue;
+        clock.begin(Stage::kFit);
+        const auto log_bytes = trial.log_bytes(now.image);
+        if (log_bytes.ok() && log_bytes.value() < fewest) fewest = log_bytes.value(), best = choices.size();
+        choices.push_back({std::move(chart.value()), most_excess});
+    }
+    if (choices.empty()) return {};
+    return std::move(choices[best]);
+}
+
+// One component's; excess: known, or 0 for one to be chosen, which is told.
+Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
+                               const Observer& observer, double& excess) {
+    if (excess == 0 && may_choose(options) && options.side == most) {
+        if (auto choice = choose_chart(mesh, options, clock)) {
+            excess = choice->most_excess;
+            if (!observer) return std::move(choice->chart);
+        }
+    }
+    if (excess == 0) excess = kExcesses[0];
+    return make_roomy_image(mesh, options, most, excess, clock, observer);
 }
 
 void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& report) {
@@ -45,7 +101,7 @@ void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& 
 }  // namespace
 
 Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer, EncodeReport& report) {
+                                        const Observer& observer, EncodeReport& report, Excesses& excesses) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
     std::vector<double> areas;
@@ -56,6 +112,7 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
     const double largest = *std::max_element(areas.begin(), areas.end());
     const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
     std::vector<GeometryImage> images;
+    excesses.resize(parts.size(), 0.0);
     for (size_t k = 0; k < parts.size(); ++k) {
         const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
         const Observer with_prefix = [&](const Snapshot& state) {
@@ -65,7 +122,8 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
         };
         EncodeOptions part_options = options;
         part_options.side = side_of_component(areas[k], largest, options.side);
-        auto chart = make_roomy_image(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer());
+        auto chart = make_chart(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
+                                excesses[k]);
         if (!chart.ok() && parts.size() == 1) return chart.error();
         if (!chart.ok()) {
             return Error{chart.error().stage, "component " + std::to_string(k) + " of " + std::to_string(parts.size()) +

@@ -17,8 +17,13 @@ struct SquareImages {
     std::vector<Mesh> surfaces;
 };
 
+// Per component the BoundaryMapOptions::most_excess of its map; 0: not chosen yet.
+using Excesses = std::vector<double>;
+
 // In the order of the components' first faces; smaller components get smaller images. Adds its figures to the report.
+// Cuts of the largest components may be chosen among several by what their images cost, where files are to meet a PSNR
+// or a size. excesses: empty, or what an earlier call has chosen; tells what was chosen.
 Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer, EncodeReport& report);
+                                        const Observer& observer, EncodeReport& report, Excesses& excesses);
 
 }  // namespace gim

@@ -79,7 +79,9 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
                               ? static_cast<uint32_t>(std::countr_zero(parameters.base_side - 1))
                               : 4;
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
+    header.side_exponents = writer.side_exponents_;
     header.level_count = largest > base ? largest - base + 1 : 1;
+    writer.drop_levels_of_no_use();
     writer.planes_ = parameters.planes;
     writer.text_ = parameters.text;
     if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
@@ -105,6 +107,18 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
         }
     }
     return writer;
+}
+
+// No image could close them.
+void GimWriter::drop_levels_of_no_use() {
+    const auto is_closed = [&](uint32_t level) {
+        for (uint32_t i = 0; i < side_exponents_.size(); ++i) {
+            if (level < header_.level_count_of(i) && level_is_closed(seam_tables_[i], (1u << (side_exponents_[i] - level)) + 1))
+                return true;
+        }
+        return false;
+    };
+    while (header_.level_count > 1 && !is_closed(header_.level_count - 1)) --header_.level_count;
 }
 
 Header GimWriter::header(double quantizer) const {

@@ -38,6 +38,7 @@ class GimWriter final : public FileWriter {
 
   private:
     GimWriter() = default;
+    void drop_levels_of_no_use();
 
     Header header_;
     std::vector<uint8_t> side_exponents_, level_psnr_, seams_;

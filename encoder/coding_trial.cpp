@@ -1,0 +1,64 @@
+#include "encoder/coding_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "encoder/decode_surface.h"
+#include "encoder/fit_coded.h"
+#include "encoder/rate_control.h"
+#include "encoder/write_gim.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kSamples = 60000;
+constexpr int kMostGuesses = 3;
+constexpr double kNearEnough = 0.5;  // octaves of the quantizer
+
+}  // namespace
+
+Result<CodingTrial::Coded> CodingTrial::coded(const GeometryImage& image, double quantizer) const {
+    CodingParameters parameters;
+    parameters.lossless = false;
+    parameters.bits = options_.bits;
+    parameters.base_side = options_.node_side;
+    parameters.quantizer = quantizer;
+    parameters.units = units_of({&image, 1}, options_.bits);
+    Header header = *parameters.units;
+    header.quantizer = quantizer_in_range(quantizer);
+    GIM_TRY(fit, CodedFit::create(image, surface_.mesh(), options_.seed));
+    GeometryImage fitted = image;
+    fitted.positions = fit.run(header, CodedFit::Effort::kSearch);
+    GIM_TRY(bytes, write_gim({&fitted, 1}, parameters));
+    GIM_TRY(decoded, decode_surface(bytes, 0));
+    CompareOptions quick;
+    quick.threads = options_.threads;
+    quick.samples = kSamples;
+    GIM_TRY(comparison, surface_.compare(decoded, quick));
+    return Coded{double(bytes.size()), comparison.psnr};
+}
+
+Result<double> CodingTrial::quantizer_for(const GeometryImage& image) const {
+    double quantizer = first_quantizer(options_.rate, options_.bits);
+    for (int k = 0; k < kMostGuesses; ++k) {
+        GIM_TRY(now, coded(image, quantizer));
+        const double octaves = options_.rate.kind == RateTarget::Kind::kBytes
+                                   ? std::log(now.bytes / options_.rate.value) / std::log(kBytesPerOctave)
+                                   : (now.psnr - options_.rate.value) / kDecibelPerOctave;
+        quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
+        if (std::abs(octaves) < kNearEnough) break;
+    }
+    return quantizer;
+}
+
+Result<double> CodingTrial::log_bytes(const GeometryImage& image) {
+    if (!quantizer_) {
+        GIM_TRY(quantizer, quantizer_for(image));
+        quantizer_ = quantizer;
+    }
+    GIM_TRY(now, coded(image, *quantizer_));
+    return std::log(now.bytes) - now.psnr * std::log(kBytesPerOctave) / kDecibelPerOctave;
+}
+
+}  // namespace gim
