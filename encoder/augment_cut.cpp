@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "encoder/circle_map.h"
 #include "encoder/parametrize.h"
@@ -20,10 +21,11 @@ struct Surface {
     const Topology& topology;
 };
 
-// A cut with the map to the square that it allows. Efficiency 0: none was found.
+// A cut with the map to the square that it allows. Efficiency and merit 0: none was found.
 struct State {
     CutEdges cut;
     double efficiency = 0;
+    double merit = 0;          // efficiency less the price of cut-paths
     uint32_t worst = kNone;  // the vertex off the cut where this map stretches most
     std::vector<AugmentStep> steps;
 };
@@ -52,16 +54,17 @@ uint32_t most_stretched(const Surface& surface, const OpenedMesh& disk, const st
 }
 
 // Maps the surface to the square along this cut.
-void judge(const Surface& surface, const BoundaryMapOptions& options, State& state) {
-    state.efficiency = 0;
+void judge(const Surface& surface, const AugmentOptions& options, State& state) {
+    state.efficiency = state.merit = 0;
     auto opened = open_mesh(surface.mesh, surface.topology, state.cut);
     if (!opened.ok()) return;
-    auto laid = map_boundary(std::move(opened.value()), options);
+    auto laid = map_boundary(std::move(opened.value()), options.boundary);
     if (!laid.ok()) return;
     const SquareBoundary& boundary = laid.value();
-    const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, options.side), {});
+    const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, options.boundary.side), {});
     if (!uv.ok()) return;
     state.efficiency = stretch_efficiency(boundary.opened.mesh, uv.value(), 1.0);
+    state.merit = state.efficiency * std::exp(-options.path_cost * double(boundary.opened.paths.size()));
     state.worst = most_stretched(surface, boundary.opened, uv.value(), state.cut);
 }
 
@@ -155,10 +158,10 @@ State follow(const Surface& surface, const AugmentOptions& options, const State&
         const uint32_t extremum = pick(surface, trial, aim);
         if (extremum == kNone) break;
         trial.cut = extend_cut(surface, trial.cut, extremum);
-        judge(surface, options.boundary, trial);
+        judge(surface, options, trial);
         if (trial.efficiency == 0) break;  // more cut-paths than the ring can hold
         trial.steps.push_back({trial.efficiency, extremum, trial.cut});
-        misses = trial.efficiency > best.efficiency ? 0 : misses + 1;
+        misses = trial.merit > best.merit ? 0 : misses + 1;
         if (misses == 0) best = trial;
     }
     return best;
@@ -190,24 +193,24 @@ State start_cut(const Surface& surface, const AugmentOptions& options) {
             state.cut =
                 straighten_cut(surface.mesh, surface.topology, shorten_cut(surface.mesh, surface.topology, state.cut));
         }
-        judge(surface, options.boundary, state);
+        judge(surface, options, state);
         state.steps.push_back({state.efficiency, kNone, state.cut});
     });
     return *std::max_element(states.begin(), states.end(),
-                             [](const State& a, const State& b) { return a.efficiency < b.efficiency; });
+                             [](const State& a, const State& b) { return a.merit < b.merit; });
 }
 
 // Follows every aim from the same start and keeps the best; again from there, as long as it helps.
 State search(const Surface& surface, const AugmentOptions& options, const Progress& progress) {
     State best = start_cut(surface, options);
     constexpr std::array<Aim, 3> kAims{Aim::kCircleMap, Aim::kSquareMap, Aim::kFarthest};
-    for (double before = -1; best.efficiency > before;) {
-        before = best.efficiency;
+    for (double before = -1; best.merit > before;) {
+        before = best.merit;
         std::array<State, kAims.size()> ends;
         tbb::parallel_for(size_t{0}, kAims.size(),
                           [&](size_t i) { ends[i] = follow(surface, options, best, kAims[i]); });
         for (State& end : ends) {
-            if (end.efficiency > best.efficiency) best = std::move(end);
+            if (end.merit > best.merit) best = std::move(end);
         }
         if (progress) progress(Stage::kCut, best.efficiency);
     }

@@ -4,7 +4,8 @@
 // ways. The search runs on a coarse version of the surface, where a parametrization takes a tenth of a second; the cut
 // is then carried to the full mesh exactly, edge by edge, as the vertex splits of the progressive mesh are made, and
 // straightened there. On closed surfaces of genus 0 the two bootstrap edges are dropped once two extrema are known: the
-// path between them is the cut. And the search looks a few steps past the first augmentation that does not help.
+// path between them is the cut. And the search looks a few steps past the first augmentation that does not help, and may ask of a
+// cut-path more than that.
 #pragma once
 
 #include <vector>
@@ -21,6 +22,7 @@ struct AugmentOptions {
     uint32_t seeds = 6;               // initial cuts tried
     uint32_t most_paths = 40;         // augmentations at most
     uint32_t patience = 3;            // augmentations without gain before giving up
+    double path_cost = 0;             // a cut-path must raise the logarithm of stretch efficiency by this to be worth it
 };
 
 // One state of the search, for reports and pictures.

@@ -13,8 +13,8 @@ double efficiency_of_squares(const Mesh& mesh, EncodeOptions options, StageClock
     options.density = false;
     options.rate = {};
     EncodeReport report;
-    Excesses excesses;
-    return make_square_images(mesh, options, clock, {}, report, excesses).ok() ? report.stretch_efficiency : 0;
+    CutPreferences preferences;
+    return make_square_images(mesh, options, clock, {}, report, preferences).ok() ? report.stretch_efficiency : 0;
 }
 
 double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {

@@ -20,8 +20,8 @@ namespace gim {
 namespace {
 
 Result<Encoded> run_squares(const Mesh& mesh, const TriangleMesh& input, const EncodeOptions& options,
-                            StageClock& clock, const Observer& observer, Encoded encoded, Excesses& excesses) {
-    GIM_TRY(squares, make_square_images(mesh, options, clock, observer, encoded.report, excesses));
+                            StageClock& clock, const Observer& observer, Encoded encoded, CutPreferences& preferences) {
+    GIM_TRY(squares, make_square_images(mesh, options, clock, observer, encoded.report, preferences));
     const CodingJob job = code_squares(std::move(squares), options, clock, encoded.report);
     return finish_encoding(job, mesh, input, options, clock, std::move(encoded));
 }
@@ -82,10 +82,10 @@ Result<Encoded> run_stages(const TriangleMesh& input, const EncodeOptions& optio
         const CodingJob job = code_charts(charts, report);
         return finish_encoding(job, std::move(cleaned.mesh), input, options, clock, std::move(encoded));
     }
-    Excesses excesses;  // chosen at the first side
+    CutPreferences preferences;  // chosen at the first side
     return best_of_sides(
         [&](const EncodeOptions& o, const Observer& shown) {
-            return run_squares(cleaned.mesh, input, o, clock, shown, encoded, excesses);
+            return run_squares(cleaned.mesh, input, o, clock, shown, encoded, preferences);
         },
         options, clock, observer);
 }

@@ -48,16 +48,17 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 
 }  // namespace
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, double most_excess,
-                                        StageClock& clock, const Observer& observer) {
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
+                                        const CutPreference& preference, StageClock& clock, const Observer& observer) {
     SingleChart chart;
-    const BoundaryMapOptions square{options.side, options.node_side, most_excess};
+    const BoundaryMapOptions square{options.side, options.node_side, preference.most_excess};
 
     clock.begin(Stage::kCut);
     const Mesh fine = refine_large_faces(mesh, largest_face(options.side) * surface_area(mesh));
     const Topology topology = build_topology(fine);
     AugmentOptions search;
     search.boundary = square;
+    search.path_cost = preference.path_cost;
     GIM_TRY(found, find_cut(fine, topology, search, clock.progress()));
     chart.cut_length = cut_length(fine, topology, found.cut);
     GIM_TRY(opened, open_mesh(fine, topology, found.cut));

@@ -9,6 +9,14 @@
 
 namespace gim {
 
+// What decides between cuts and their maps; which is best for coding differs from surface to surface.
+struct CutPreference {
+    double most_excess = 0.1;  // BoundaryMapOptions: cut-nodes on a coarse grid, or each cut-path at its share of the boundary
+    double path_cost = 0.003;  // AugmentOptions: few cut-paths, or little stretch
+
+    friend bool operator==(const CutPreference&, const CutPreference&) = default;
+};
+
 struct SingleChart {
     GeometryImage image;
     double cut_length = 0;           // object units
@@ -18,8 +26,8 @@ struct SingleChart {
     uint64_t folds_before_fit = 0;
 };
 
-// In: a clean connected mesh. most_excess: BoundaryMapOptions. `clock` takes the time of each stage, `observer` the states on the way.
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, double most_excess,
-                                        StageClock& clock, const Observer& observer = {});
+// In: a clean connected mesh. `clock` takes the time of each stage, `observer` the states on the way.
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
+                                        const CutPreference& preference, StageClock& clock, const Observer& observer = {});
 
 }  // namespace gim

@@ -28,16 +28,15 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
     return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
 }
 
-// The first is for all images. Cut-nodes on a coarse grid code better, and so do maps that give every cut-path its share; which
-// counts for more is different from surface to surface, and the search for the cut takes other ways besides.
-constexpr double kExcesses[] = {BoundaryMapOptions{}.most_excess, 0.4, 0.03};
+// Tried where there is something to choose for. The first is for all other images.
+constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}};
 
 // A component whose cut needs more room than its area deserves gets it.
-Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most, double most_excess,
-                                     StageClock& clock, const Observer& observer) {
+Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
+                                     const CutPreference& preference, StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {
         options.node_side = std::min(options.node_side, options.side);
-        auto chart = make_geometry_image(mesh, options, most_excess, clock, observer);
+        auto chart = make_geometry_image(mesh, options, preference, clock, observer);
         if (chart.ok() || options.side >= most) return chart;
     }
 }
@@ -51,7 +50,7 @@ bool may_choose(const EncodeOptions& options) {
 
 struct Choice {
     SingleChart chart;
-    double most_excess;
+    CutPreference preference;
 };
 
 // The one whose image costs fewest bytes when coded; nothing where none can be made.
@@ -60,8 +59,8 @@ std::optional<Choice> choose_chart(const Mesh& mesh, const EncodeOptions& option
     std::vector<Choice> choices;
     size_t best = 0;
     double fewest = std::numeric_limits<double>::infinity();
-    for (const double most_excess : kExcesses) {
-        auto chart = make_geometry_image(mesh, options, most_excess, clock);
+    for (const CutPreference& preference : kPreferences) {
+        auto chart = make_geometry_image(mesh, options, preference, clock);
         if (!chart.ok()) continue;
         const SingleChart& now = chart.value();
         const bool is_known = std::any_of(choices.begin(), choices.end(), [&](const Choice& other) {
@@ -71,23 +70,23 @@ std::optional<Choice> choose_chart(const Mesh& mesh, const EncodeOptions& option
         clock.begin(Stage::kFit);
         const auto log_bytes = trial.log_bytes(now.image);
         if (log_bytes.ok() && log_bytes.value() < fewest) fewest = log_bytes.value(), best = choices.size();
-        choices.push_back({std::move(chart.value()), most_excess});
+        choices.push_back({std::move(chart.value()), preference});
     }
     if (choices.empty()) return {};
     return std::move(choices[best]);
 }
 
-// One component's; excess: known, or 0 for one to be chosen, which is told.
+// One component's. preference: known, or to be chosen and told.
 Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
-                               const Observer& observer, double& excess) {
-    if (excess == 0 && may_choose(options) && options.side == most) {
+                               const Observer& observer, std::optional<CutPreference>& preference) {
+    if (!preference && may_choose(options) && options.side == most) {
         if (auto choice = choose_chart(mesh, options, clock)) {
-            excess = choice->most_excess;
+            preference = choice->preference;
             if (!observer) return std::move(choice->chart);
         }
     }
-    if (excess == 0) excess = kExcesses[0];
-    return make_roomy_image(mesh, options, most, excess, clock, observer);
+    if (!preference) preference = kPreferences[0];
+    return make_roomy_image(mesh, options, most, *preference, clock, observer);
 }
 
 void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& report) {
@@ -101,7 +100,7 @@ void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& 
 }  // namespace
 
 Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer, EncodeReport& report, Excesses& excesses) {
+                                        const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
     std::vector<double> areas;
@@ -112,7 +111,7 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
     const double largest = *std::max_element(areas.begin(), areas.end());
     const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
     std::vector<GeometryImage> images;
-    excesses.resize(parts.size(), 0.0);
+    preferences.resize(parts.size());
     for (size_t k = 0; k < parts.size(); ++k) {
         const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
         const Observer with_prefix = [&](const Snapshot& state) {
@@ -123,7 +122,7 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
         EncodeOptions part_options = options;
         part_options.side = side_of_component(areas[k], largest, options.side);
         auto chart = make_chart(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
-                                excesses[k]);
+                                preferences[k]);
         if (!chart.ok() && parts.size() == 1) return chart.error();
         if (!chart.ok()) {
             return Error{chart.error().stage, "component " + std::to_string(k) + " of " + std::to_string(parts.size()) +

@@ -1,11 +1,13 @@
 // The layout gim: one square image per connected component.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "encoder/geometry_image.h"
 #include "encoder/mesh.h"
 #include "encoder/result.h"
+#include "encoder/single_chart.h"
 #include "encoder/stage_clock.h"
 #include "gim/encoder.h"
 
@@ -17,13 +19,13 @@ struct SquareImages {
     std::vector<Mesh> surfaces;
 };
 
-// Per component the BoundaryMapOptions::most_excess of its map; 0: not chosen yet.
-using Excesses = std::vector<double>;
+// Per component; nothing: not chosen yet.
+using CutPreferences = std::vector<std::optional<CutPreference>>;
 
 // In the order of the components' first faces; smaller components get smaller images. Adds its figures to the report.
 // Cuts of the largest components may be chosen among several by what their images cost, where files are to meet a PSNR
-// or a size. excesses: empty, or what an earlier call has chosen; tells what was chosen.
+// or a size. preferences: empty, or what an earlier call has chosen; tells what was chosen.
 Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer, EncodeReport& report, Excesses& excesses);
+                                        const Observer& observer, EncodeReport& report, CutPreferences& preferences);
 
 }  // namespace gim
