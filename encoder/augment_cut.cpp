@@ -281,13 +281,18 @@ double mean_edge_length(const Mesh& mesh) {
 
 }  // namespace
 
-Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const AugmentOptions& options,
-                          const Progress& progress) {
+CoarseSurface coarsen(const Mesh& mesh, uint32_t vertices) {
     ProgressiveMesh hierarchy(mesh);
-    simplify(hierarchy, mesh.positions, {options.coarse_vertices, false, {}});
-    const ProgressiveMesh::Compacted coarse = hierarchy.compact(mesh.positions);
-    const Topology coarse_topology = build_topology(coarse.mesh);
-    State state = search({coarse.mesh, coarse_topology}, options, progress);
+    simplify(hierarchy, mesh.positions, {vertices, false, {}});
+    ProgressiveMesh::Compacted compacted = hierarchy.compact(mesh.positions);
+    Topology topology = build_topology(compacted.mesh);
+    return {std::move(hierarchy), std::move(compacted), std::move(topology)};
+}
+
+Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const CoarseSurface& surface,
+                          const AugmentOptions& options, const Progress& progress) {
+    const ProgressiveMesh::Compacted& coarse = surface.compacted;
+    State state = search({coarse.mesh, surface.topology}, options, progress);
     FoundCut found{std::move(state.cut), std::move(state.steps), coarse.mesh};
 
     CutEdges marks(topology.twin.size(), 0);
@@ -299,6 +304,7 @@ Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const Augm
         step.extremum = coarse.vertices[step.extremum];
         straighten.fixed.push_back(step.extremum);
     }
+    ProgressiveMesh hierarchy = surface.hierarchy;
     found.cut = straighten_cut(mesh, topology, CutRefiner(hierarchy, std::move(marks)).run(), straighten);
     if (!opens_to_disk(mesh, topology, found.cut)) {
         return Error{Stage::kCut, "the cut found on the coarse mesh does not open the full mesh into a disk"};

@@ -12,13 +12,15 @@
 
 #include "encoder/boundary_map.h"
 #include "encoder/cut.h"
+#include "encoder/progressive_mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {
 
+inline constexpr uint32_t kSearchVertices = 3000;  // of the mesh searched on; more see finer extrema, time grows with them
+
 struct AugmentOptions {
     BoundaryMapOptions boundary;      // of the final image: the search judges maps to the same square
-    uint32_t coarse_vertices = 3000;  // size of the mesh searched on; more see finer extrema, time grows with it
     uint32_t seeds = 6;               // initial cuts tried
     uint32_t most_paths = 40;         // augmentations at most
     uint32_t patience = 3;            // augmentations without gain before giving up
@@ -37,7 +39,17 @@ struct FoundCut {
     std::vector<AugmentStep> steps;
     Mesh searched;  // the coarse mesh
 };
-Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const AugmentOptions& options,
-                          const Progress& progress = {});
+
+// What the search runs on; made once for several searches. O(V log V).
+struct CoarseSurface {
+    ProgressiveMesh hierarchy;
+    ProgressiveMesh::Compacted compacted;
+    Topology topology;  // of the compacted mesh
+};
+CoarseSurface coarsen(const Mesh& mesh, uint32_t vertices);
+
+// coarse: of the same mesh.
+Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const CoarseSurface& coarse,
+                          const AugmentOptions& options, const Progress& progress = {});
 
 }  // namespace gim

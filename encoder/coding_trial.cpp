@@ -18,6 +18,9 @@ constexpr double kNearEnough = 0.5;  // octaves of the quantizer
 
 }  // namespace
 
+CodingTrial::CodingTrial(const Mesh& surface, const EncodeOptions& options, const GeometryImage& example)
+    : surface_(surface, options.threads), options_(options), quantizer_(quantizer_for(example)) {}
+
 Result<CodingTrial::Coded> CodingTrial::coded(const GeometryImage& image, double quantizer) const {
     CodingParameters parameters;
     parameters.lossless = false;
@@ -39,25 +42,22 @@ Result<CodingTrial::Coded> CodingTrial::coded(const GeometryImage& image, double
     return Coded{double(bytes.size()), comparison.psnr};
 }
 
-Result<double> CodingTrial::quantizer_for(const GeometryImage& image) const {
+double CodingTrial::quantizer_for(const GeometryImage& image) const {
     double quantizer = first_quantizer(options_.rate, options_.bits);
     for (int k = 0; k < kMostGuesses; ++k) {
-        GIM_TRY(now, coded(image, quantizer));
+        const auto now = coded(image, quantizer);
+        if (!now.ok()) break;
         const double octaves = options_.rate.kind == RateTarget::Kind::kBytes
-                                   ? std::log(now.bytes / options_.rate.value) / std::log(kBytesPerOctave)
-                                   : (now.psnr - options_.rate.value) / kDecibelPerOctave;
+                                   ? std::log(now.value().bytes / options_.rate.value) / std::log(kBytesPerOctave)
+                                   : (now.value().psnr - options_.rate.value) / kDecibelPerOctave;
         quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
         if (std::abs(octaves) < kNearEnough) break;
     }
     return quantizer;
 }
 
-Result<double> CodingTrial::log_bytes(const GeometryImage& image) {
-    if (!quantizer_) {
-        GIM_TRY(quantizer, quantizer_for(image));
-        quantizer_ = quantizer;
-    }
-    GIM_TRY(now, coded(image, *quantizer_));
+Result<double> CodingTrial::log_bytes(const GeometryImage& image) const {
+    GIM_TRY(now, coded(image, quantizer_));
     return std::log(now.bytes) - now.psnr * std::log(kBytesPerOctave) / kDecibelPerOctave;
 }
 

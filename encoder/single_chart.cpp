@@ -48,47 +48,52 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 
 }  // namespace
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
-                                        const CutPreference& preference, StageClock& clock, const Observer& observer) {
-    SingleChart chart;
-    const BoundaryMapOptions square{options.side, options.node_side, preference.most_excess};
+CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side) {
+    Mesh fine = refine_large_faces(mesh, largest_face(side) * surface_area(mesh));
+    Topology topology = build_topology(fine);
+    CoarseSurface coarse = coarsen(fine, kSearchVertices);
+    return {std::move(fine), std::move(topology), std::move(coarse)};
+}
 
-    clock.begin(Stage::kCut);
-    const Mesh fine = refine_large_faces(mesh, largest_face(options.side) * surface_area(mesh));
-    const Topology topology = build_topology(fine);
+Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options, const CutPreference& preference,
+                            const Progress& progress, const Observer& observer) {
     AugmentOptions search;
-    search.boundary = square;
+    search.boundary = {options.side, options.node_side, preference.most_excess};
     search.path_cost = preference.path_cost;
-    GIM_TRY(found, find_cut(fine, topology, search, clock.progress()));
-    chart.cut_length = cut_length(fine, topology, found.cut);
-    GIM_TRY(opened, open_mesh(fine, topology, found.cut));
+    GIM_TRY(found, find_cut(surface.mesh, surface.topology, surface.coarse, search, progress));
+    GIM_TRY(opened, open_mesh(surface.mesh, surface.topology, found.cut));
     if (observer) show_cut_search(found, observer);
+    GIM_TRY(boundary, map_boundary(std::move(opened), search.boundary));
+    return CutSurface{std::move(boundary), cut_length(surface.mesh, surface.topology, found.cut)};
+}
 
-    clock.begin(Stage::kBoundaryMap);
-    GIM_TRY(boundary, map_boundary(std::move(opened), square));
+Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
+                                   StageClock& clock, const Observer& observer) {
+    SingleChart chart;
+    chart.cut_length = cut.cut_length;
 
     clock.begin(Stage::kParametrize);
-    const Mesh& disk = boundary.opened.mesh;
-    const std::vector<Vec2> border = boundary_uv(boundary, options.side);
-    GIM_TRY(even, parametrize(disk, boundary.sides, border, {}, clock.progress()));
+    const Mesh& disk = cut.boundary.opened.mesh;
+    const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
+    GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, {}, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
-        observer(make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), boundary.opened, uv));
+        observer(make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
     }
     if (options.density) {
         ParametrizeOptions weighted;
         const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
-        weighted.importance = importance_from_error(disk, uv, sample_surface(boundary, uv, options.side),
+        weighted.importance = importance_from_error(disk, uv, sample_surface(cut.boundary, uv, options.side),
                                                     lossless ? DensityOptions{} : kCodedDensity);
-        GIM_TRY(adapted, parametrize(disk, boundary.sides, border, weighted, clock.progress()));
+        GIM_TRY(adapted, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
         uv = std::move(adapted);
-        if (observer) observer(make_snapshot("map-density", "denser where it errs", boundary.opened, uv));
+        if (observer) observer(make_snapshot("map-density", "denser where it errs", cut.boundary.opened, uv));
     }
     chart.flipped_triangles = count_flipped(disk, uv);
 
     clock.begin(Stage::kSample);
-    chart.image = sample_surface(boundary, uv, options.side);
+    chart.image = sample_surface(cut.boundary, uv, options.side);
     if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
     const auto strength = fit_strength(options);
     if (!strength) return chart;
@@ -104,6 +109,13 @@ Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& o
     chart.folds_before_fit = fitted.before.folds;
     if (observer) observer(make_snapshot("image-fitted", "fitted", chart.image));
     return chart;
+}
+
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
+                                        const CutPreference& preference, StageClock& clock, const Observer& observer) {
+    clock.begin(Stage::kCut);
+    GIM_TRY(cut, cut_open(make_cuttable(mesh, options.side), options, preference, clock.progress(), observer));
+    return map_and_sample(cut, mesh, options, clock, observer);
 }
 
 }  // namespace gim

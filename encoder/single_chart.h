@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "encoder/augment_cut.h"
+#include "encoder/boundary_map.h"
 #include "encoder/geometry_image.h"
 #include "encoder/stage_clock.h"
 #include "gim/encoder.h"
@@ -26,8 +28,29 @@ struct SingleChart {
     uint64_t folds_before_fit = 0;
 };
 
-// In: a clean connected mesh. `clock` takes the time of each stage, `observer` the states on the way.
+// A clean connected mesh made ready for cuts, of which several may be tried.
+struct CuttableSurface {
+    Mesh mesh;  // large faces split
+    Topology topology;
+    CoarseSurface coarse;
+};
+CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side);
+
+// One that is cut open, its boundary on that of the square.
+struct CutSurface {
+    SquareBoundary boundary;
+    double cut_length = 0;  // object units
+};
+Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options, const CutPreference& preference,
+                            const Progress& progress = {}, const Observer& observer = {});
+
+// The rest. `mesh`: the surface as it came. `clock` takes the time of each stage, `observer` the states on the way.
+Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
+                                   StageClock& clock, const Observer& observer = {});
+
+// All in a row. In: a clean connected mesh.
 Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
-                                        const CutPreference& preference, StageClock& clock, const Observer& observer = {});
+                                        const CutPreference& preference, StageClock& clock,
+                                        const Observer& observer = {});
 
 }  // namespace gim

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "encoder/coding_trial.h"
-#include "encoder/boundary_map.h"
+#include "encoder/choose_chart.h"
 #include "encoder/refine.h"
 #include "encoder/single_chart.h"
 #include "encoder/topology_summary.h"
@@ -28,9 +26,6 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
     return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
 }
 
-// Tried where there is something to choose for. The first is for all other images.
-constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}};
-
 // A component whose cut needs more room than its area deserves gets it.
 Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
                                      const CutPreference& preference, StageClock& clock, const Observer& observer) {
@@ -41,51 +36,16 @@ Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, ui
     }
 }
 
-// A choice is made for what a file is fitted to.
-bool may_choose(const EncodeOptions& options) {
-    const bool has_target =
-        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
-    return has_target && options.fit == FitStrength::kAuto;
-}
-
-struct Choice {
-    SingleChart chart;
-    CutPreference preference;
-};
-
-// The one whose image costs fewest bytes when coded; nothing where none can be made.
-std::optional<Choice> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
-    CodingTrial trial(mesh, options);
-    std::vector<Choice> choices;
-    size_t best = 0;
-    double fewest = std::numeric_limits<double>::infinity();
-    for (const CutPreference& preference : kPreferences) {
-        auto chart = make_geometry_image(mesh, options, preference, clock);
-        if (!chart.ok()) continue;
-        const SingleChart& now = chart.value();
-        const bool is_known = std::any_of(choices.begin(), choices.end(), [&](const Choice& other) {
-            return other.chart.cut_length == now.cut_length && other.chart.image.sideband == now.image.sideband;
-        });
-        if (is_known) continue;
-        clock.begin(Stage::kFit);
-        const auto log_bytes = trial.log_bytes(now.image);
-        if (log_bytes.ok() && log_bytes.value() < fewest) fewest = log_bytes.value(), best = choices.size();
-        choices.push_back({std::move(chart.value()), preference});
-    }
-    if (choices.empty()) return {};
-    return std::move(choices[best]);
-}
-
 // One component's. preference: known, or to be chosen and told.
 Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
                                const Observer& observer, std::optional<CutPreference>& preference) {
-    if (!preference && may_choose(options) && options.side == most) {
+    if (!preference && may_choose_chart(options) && options.side == most) {
         if (auto choice = choose_chart(mesh, options, clock)) {
             preference = choice->preference;
             if (!observer) return std::move(choice->chart);
         }
     }
-    if (!preference) preference = kPreferences[0];
+    if (!preference) preference = CutPreference{};
     return make_roomy_image(mesh, options, most, *preference, clock, observer);
 }
 

@@ -73,9 +73,8 @@ TEST(Cut, HalvesOfACutEdgeAreMarkedAlike) {
 TEST(FindCut, OpensEverySurfaceIntoADisk) {
     for (const NamedMesh& m : connected_meshes()) {
         const Topology topology = build_topology(m.mesh);
-        AugmentOptions options;
-        options.coarse_vertices = 300;  // well below the meshes: the cut must survive the way back to the full mesh
-        const auto found = find_cut(m.mesh, topology, options);
+        // Well below the meshes: the cut must survive the way back to the full mesh.
+        const auto found = find_cut(m.mesh, topology, coarsen(m.mesh, 300), {});
         ASSERT_TRUE(found.ok()) << m.name << ": " << found.error().message;
         EXPECT_TRUE(opens_to_disk(m.mesh, topology, found.value().cut)) << m.name;
     }
@@ -86,8 +85,7 @@ TEST(FindCut, ReachesTheLimbs) {
     ASSERT_TRUE(cleaned.ok());
     const Mesh& mesh = cleaned.value().mesh;
     const Topology topology = build_topology(mesh);
-    AugmentOptions options;
-    const auto found = find_cut(mesh, topology, options);
+    const auto found = find_cut(mesh, topology, coarsen(mesh, kSearchVertices), {});
     ASSERT_TRUE(found.ok());
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, found.value().cut);
     EXPECT_GE(std::count(valence.begin(), valence.end(), 1u), 4) << "leaves of the cut, of five limbs";
@@ -97,7 +95,8 @@ TEST(FindCut, ReachesTheLimbs) {
 TEST(FindCut, SameCutTwice) {
     const Mesh mesh = clean(corpus::torus(40, 20, 1, 0.4)).value().mesh;
     const Topology topology = build_topology(mesh);
-    EXPECT_EQ(find_cut(mesh, topology, {}).value().cut, find_cut(mesh, topology, {}).value().cut);
+    const CoarseSurface coarse = coarsen(mesh, kSearchVertices);
+    EXPECT_EQ(find_cut(mesh, topology, coarse, {}).value().cut, find_cut(mesh, topology, coarse, {}).value().cut);
 }
 
 }  // namespace
