@@ -25,7 +25,7 @@ struct Surface {
 struct State {
     CutEdges cut;
     double efficiency = 0;
-    double merit = 0;          // efficiency less the price of cut-paths
+    double merit = 0;        // efficiency less the price of cut-paths
     uint32_t worst = kNone;  // the vertex off the cut where this map stretches most
     std::vector<AugmentStep> steps;
 };

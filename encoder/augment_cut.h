@@ -17,14 +17,15 @@
 
 namespace gim {
 
-inline constexpr uint32_t kSearchVertices = 3000;  // of the mesh searched on; more see finer extrema, time grows with them
+inline constexpr uint32_t kSearchVertices =
+    3000;  // of the mesh searched on; more see finer extrema, time grows with them
 
 struct AugmentOptions {
-    BoundaryMapOptions boundary;      // of the final image: the search judges maps to the same square
-    uint32_t seeds = 6;               // initial cuts tried
-    uint32_t most_paths = 40;         // augmentations at most
-    uint32_t patience = 3;            // augmentations without gain before giving up
-    double path_cost = 0;             // a cut-path must raise the logarithm of stretch efficiency by this to be worth it
+    BoundaryMapOptions boundary;  // of the final image: the search judges maps to the same square
+    uint32_t seeds = 6;           // initial cuts tried
+    uint32_t most_paths = 40;     // augmentations at most
+    uint32_t patience = 3;        // augmentations without gain before giving up
+    double path_cost = 0;         // a cut-path must raise the logarithm of stretch efficiency by this to be worth it
 };
 
 // One state of the search, for reports and pictures.

@@ -19,7 +19,8 @@ namespace gim {
 struct BoundaryMapOptions {
     uint32_t side = 257;      // samples per side of the image, 2^j + 1
     uint32_t node_side = 17;  // coarsest grid on which cut-nodes should lie, 2^i + 1 <= side; raised when too coarse
-    double most_excess = 0.1;  // part of the ring that cut-paths may have beyond their shares: what makes a grid too coarse
+    double most_excess =
+        0.1;  // part of the ring that cut-paths may have beyond their shares: what makes a grid too coarse
 };
 
 // The opened mesh with its boundary laid out. Edges that span a corner of the square have been split there (with their

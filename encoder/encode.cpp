@@ -35,22 +35,48 @@ bool is_better(const Encoded& a, const Encoded& b, const RateTarget& rate) {
                                                  : a.bytes.size() < b.bytes.size();
 }
 
+EncodeOptions halved(EncodeOptions options) {
+    options.side = (options.side - 1) / 2 + 1;
+    options.node_side = std::min(options.node_side, options.side);
+    return options;
+}
+
+bool may_halve(const EncodeOptions& options) {
+    switch (options.rate.kind) {
+        case RateTarget::Kind::kPsnr:
+            return options.try_smaller_sides && options.side >= kLeastSideToHalve &&
+                   options.rate.value <= kMostPsnrOfSmallerSides;
+        case RateTarget::Kind::kBytes:
+            return options.try_smaller_sides && options.side >= kLeastSideToHalve;
+        case RateTarget::Kind::kLossless:
+        case RateTarget::Kind::kQuality:
+            break;
+    }
+    return false;
+}
+
 // The file of the side that is asked for or, where that is allowed and the target coarse, of the half of it as long as halving
-// makes it better. Pictures are those of the first.
+// makes it better. The half comes first: cuts are chosen there, in a quarter of the time. Pictures are those of the first.
 template <class Run>
 Result<Encoded> best_of_sides(const Run& run, EncodeOptions options, const StageClock& clock,
                               const Observer& observer) {
+    if (!may_halve(options)) return run(options, observer);
+    const auto improves = [&](const Result<Encoded>& now, const Result<Encoded>& best) {
+        return now.ok() && (!best.ok() || is_better(now.value(), best.value(), options.rate));
+    };
+    const EncodeOptions whole = options;
+    options = halved(options);
     auto best = run(options, observer);
-    const bool has_target =
-        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
-    if (!options.try_smaller_sides || !has_target) return best;
-    while (best.ok() && best.value().report.error.psnr <= kMostPsnrOfSmallerSides &&
-           options.side >= kLeastSideToHalve) {
-        options.side = (options.side - 1) / 2 + 1;
-        options.node_side = std::min(options.node_side, options.side);
-        auto half = run(options, {});
-        if (!half.ok() || !is_better(half.value(), best.value(), options.rate)) break;
-        best = std::move(half);
+    auto of_whole = run(whole, {});
+    if (!best.ok() || improves(of_whole, best)) {
+        best = std::move(of_whole);
+    } else {
+        while (options.side >= kLeastSideToHalve) {
+            options = halved(options);
+            auto half = run(options, {});
+            if (!improves(half, best)) break;
+            best = std::move(half);
+        }
     }
     if (best.ok()) {
         best.value().report.times = clock.times();

@@ -55,8 +55,8 @@ CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side) {
     return {std::move(fine), std::move(topology), std::move(coarse)};
 }
 
-Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options, const CutPreference& preference,
-                            const Progress& progress, const Observer& observer) {
+Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options,
+                            const CutPreference& preference, const Progress& progress, const Observer& observer) {
     AugmentOptions search;
     search.boundary = {options.side, options.node_side, preference.most_excess};
     search.path_cost = preference.path_cost;
@@ -79,7 +79,8 @@ Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, cons
     std::vector<Vec2> uv = std::move(even);
     chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
-        observer(make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
+        observer(
+            make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
     }
     if (options.density) {
         ParametrizeOptions weighted;
@@ -111,8 +112,8 @@ Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, cons
     return chart;
 }
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
-                                        const CutPreference& preference, StageClock& clock, const Observer& observer) {
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
+                                        StageClock& clock, const Observer& observer) {
     clock.begin(Stage::kCut);
     GIM_TRY(cut, cut_open(make_cuttable(mesh, options.side), options, preference, clock.progress(), observer));
     return map_and_sample(cut, mesh, options, clock, observer);

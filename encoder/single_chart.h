@@ -13,7 +13,8 @@ namespace gim {
 
 // What decides between cuts and their maps; which is best for coding differs from surface to surface.
 struct CutPreference {
-    double most_excess = 0.1;  // BoundaryMapOptions: cut-nodes on a coarse grid, or each cut-path at its share of the boundary
+    double most_excess =
+        0.1;  // BoundaryMapOptions: cut-nodes on a coarse grid, or each cut-path at its share of the boundary
     double path_cost = 0.003;  // AugmentOptions: few cut-paths, or little stretch
 
     friend bool operator==(const CutPreference&, const CutPreference&) = default;
@@ -41,16 +42,16 @@ struct CutSurface {
     SquareBoundary boundary;
     double cut_length = 0;  // object units
 };
-Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options, const CutPreference& preference,
-                            const Progress& progress = {}, const Observer& observer = {});
+Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options,
+                            const CutPreference& preference, const Progress& progress = {},
+                            const Observer& observer = {});
 
 // The rest. `mesh`: the surface as it came. `clock` takes the time of each stage, `observer` the states on the way.
 Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
                                    StageClock& clock, const Observer& observer = {});
 
 // All in a row. In: a clean connected mesh.
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options,
-                                        const CutPreference& preference, StageClock& clock,
-                                        const Observer& observer = {});
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
+                                        StageClock& clock, const Observer& observer = {});
 
 }  // namespace gim

@@ -113,7 +113,8 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
 void GimWriter::drop_levels_of_no_use() {
     const auto is_closed = [&](uint32_t level) {
         for (uint32_t i = 0; i < side_exponents_.size(); ++i) {
-            if (level < header_.level_count_of(i) && level_is_closed(seam_tables_[i], (1u << (side_exponents_[i] - level)) + 1))
+            if (level < header_.level_count_of(i) &&
+                level_is_closed(seam_tables_[i], (1u << (side_exponents_[i] - level)) + 1))
                 return true;
         }
         return false;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "encoder/cut.h"
+#include "format/seam.h"
 #include "tests/encoder/stage_meshes.h"
 
 namespace gim {
@@ -25,6 +26,20 @@ std::vector<Laid> laid_out(const BoundaryMapOptions& options) {
         if (boundary.ok()) result.push_back({std::move(m), std::move(boundary.value())});
     }
     return result;
+}
+
+// The part of the boundary loop that each cut-path has on the surface.
+std::vector<double> shares_of(const OpenedMesh& opened) {
+    std::vector<double> lengths(opened.paths.size(), 0.0);
+    for (size_t i = 0, k = 0; i < opened.loop.size(); ++i) {
+        while (k + 1 < opened.paths.size() && opened.paths[k + 1].first <= i) ++k;
+        const Vec3 &a = opened.mesh.positions[opened.loop[i]],
+                   &b = opened.mesh.positions[opened.loop[(i + 1) % opened.loop.size()]];
+        lengths[k] += (b - a).norm();
+    }
+    const double all = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    for (double& length : lengths) length /= all;
+    return lengths;
 }
 
 TEST(BoundaryMap, PathsFillTheRingAndMatesAreEquallyLong) {
@@ -74,6 +89,25 @@ TEST(BoundaryMap, NoInteriorEdgeLiesAlongASide) {
     }
 }
 
+TEST(BoundaryMap, TheNodeGridIsClosedAndFineEnoughForEveryPathToHaveAboutItsShare) {
+    for (const double most_excess : {0.02, 0.1, 0.5}) {
+        for (const Laid& l : laid_out({257, 5, most_excess})) {
+            const Sideband& sideband = l.boundary.sideband;
+            SeamTable seams;
+            ASSERT_EQ(build_seam_table(sideband, &seams), Status::kOk);
+            EXPECT_TRUE(level_is_closed(seams, sideband.node_side)) << l.input.name;
+            const std::vector<double> shares = shares_of(l.boundary.opened);
+            double excess = 0;
+            for (size_t k = 0; k < shares.size(); ++k) {
+                excess += std::max(0.0, double(sideband.paths[k].length) / (4 * (sideband.node_side - 1)) - shares[k]);
+            }
+            if (shares.size() > 2) {
+                EXPECT_LE(excess, most_excess + 1e-3) << l.input.name;
+            }
+        }
+    }
+}
+
 TEST(BoundaryMap, NoLeafOfTheCutLiesOnACorner) {
     for (const Laid& l : laid_out({})) {
         const Sideband& sideband = l.boundary.sideband;
@@ -97,11 +131,11 @@ TEST(BoundaryMap, TooManyPathsForTheImageIsAClearError) {
 }
 
 TEST(RingPoint, WalksTheSquareCounterClockwise) {
-    EXPECT_EQ(ring_point(0, 5), Vec2(0, 0));
-    EXPECT_EQ(ring_point(4, 5), Vec2(1, 0));
-    EXPECT_EQ(ring_point(8, 5), Vec2(1, 1));
-    EXPECT_EQ(ring_point(12, 5), Vec2(0, 1));
-    EXPECT_EQ(ring_point(14, 5), Vec2(0, 0.5));
+    EXPECT_EQ(ring_point(0.0, 5), Vec2(0, 0));
+    EXPECT_EQ(ring_point(4.0, 5), Vec2(1, 0));
+    EXPECT_EQ(ring_point(8.0, 5), Vec2(1, 1));
+    EXPECT_EQ(ring_point(12.0, 5), Vec2(0, 1));
+    EXPECT_EQ(ring_point(14.0, 5), Vec2(0, 0.5));
 }
 
 }  // namespace

@@ -92,6 +92,20 @@ TEST(FindCut, ReachesTheLimbs) {
     EXPECT_GT(found.value().steps.back().efficiency, found.value().steps[2].efficiency);
 }
 
+TEST(FindCut, WhatPathsCostDecidesHowManyThereAre) {
+    const Mesh mesh = clean(corpus::limbed_blob(30)).value().mesh;
+    const Topology topology = build_topology(mesh);
+    const CoarseSurface coarse = coarsen(mesh, kSearchVertices);
+    const auto leaves = [&](double path_cost) {
+        AugmentOptions options;
+        options.path_cost = path_cost;
+        const CutEdges cut = find_cut(mesh, topology, coarse, options).value().cut;
+        const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);
+        return std::count(valence.begin(), valence.end(), 1u);
+    };
+    EXPECT_LT(leaves(0.2), leaves(0));
+}
+
 TEST(FindCut, SameCutTwice) {
     const Mesh mesh = clean(corpus::torus(40, 20, 1, 0.4)).value().mesh;
     const Topology topology = build_topology(mesh);

@@ -170,6 +170,24 @@ TEST(WriteGim, CoarserLevelsAreUsableImages) {
     }
 }
 
+// Cut-nodes on a grid of 9 x 9: smaller images cannot be closed, and only cost bytes.
+TEST(WriteGim, LevelsThatNoImageCanCloseAreLeftOut) {
+    CodingParameters parameters;
+    parameters.base_side = 3;
+    const GeometryImage fine = bumpy(33, 1, {9, 0, {{2, 7}, {3, 9}, {0, 7}, {1, 9}}});
+    const GeometryImage coarse = bumpy(33, 1, {5, 0, {{2, 3}, {3, 5}, {0, 3}, {1, 5}}});
+    const auto level_count = [&](std::span<const GeometryImage> images) {
+        gim_info info;
+        const auto bytes = write_gim(images, parameters).value();
+        EXPECT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
+        return info.level_count;
+    };
+    EXPECT_EQ(level_count({&fine, 1}), 3u);
+    EXPECT_EQ(level_count({&coarse, 1}), 4u);
+    const std::vector<GeometryImage> both{fine, coarse};
+    EXPECT_EQ(level_count(both), 4u);
+}
+
 TEST(WriteGim, OverheadIsSmall) {
     const GeometryImage image = bumpy(257, 7, {17, 8, {{1, 32}, {0, 32}}});
     CodingParameters p;
