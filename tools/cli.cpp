@@ -76,7 +76,8 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
                         "that meets --psnr or --bytes better")
             ->check(side_validator(9, 4097));
     sub->add_option("--node-side", a.command.options.node_side,
-                    "Coarsest level that stays closed: the cut's nodes lie on a grid of this side")
+                    "Coarsest level that should stay closed: the cut's nodes lie on a grid of this side, or on a finer "
+                    "one where the cut needs it")
         ->check(side_validator(3, 4097))
         ->capture_default_str();
     sub->add_option("--samples", a.command.options.samples, "mcgim: bound on width * height of the image")

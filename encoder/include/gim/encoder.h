@@ -143,13 +143,13 @@ struct EncodeOptions {
     uint32_t side = 257;  // samples per side of the square, 2^j + 1; doubling it costs 4x time and memory.
                           // Of several components the largest gets it, the others less, by their area
     // kGim with a target of PSNR or bytes: where that is coarse, also codes images of half the side, and so on as long as
-    // that is better, and keeps the best file. About 1.5 times the time.
+    // that is better, and keeps the best file. About 1.5 times the time. The cut is chosen at the first half.
     bool try_smaller_sides = false;
     uint32_t samples = 66049;  // kMcgim: bound on width * height
     uint32_t charts = 0;      // kMcgim: how many are asked for, 0: chosen by the shape; more come out where topology or
                               // flattening needs them
     uint32_t node_side = 17;  // grid on which cut-nodes lie, so that all coarser levels down to it stay closed;
-                              // made finer by the encoder where the cut has too many nodes for it
+                              // made finer by the encoder where whole units of it do not suit the cut
     uint32_t bits = 12;       // quantizer: bits per coordinate of the bounding box, 8..20
     RateTarget rate;
     FitStrength fit = FitStrength::kAuto;
