@@ -66,10 +66,7 @@ void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorksp
 
 void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws) {
     ws->models = arena->take<BandModels>(1);
-    ws->band_work.above = arena->take<int32_t>(BandWork::row_size(columns));
-    ws->band_work.current = arena->take<int32_t>(BandWork::row_size(columns));
-    ws->band_work.expected = arena->take<uint32_t>(BandWork::row_size(columns));
-    ws->band_work.full_above = arena->take<uint8_t>(BandWork::block_size(columns));
+    ws->band_work = BandWork(arena->take<uint32_t>(BandWork::size(columns)), columns);
     ws->synthesis = arena->take<float>(synthesis_work_size(columns));
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "format/bit_model.h"
+#include "format/inline.h"
 
 namespace gim {
 
@@ -21,16 +22,18 @@ class RangeDecoder {
         code_ |= next_word();
     }
 
-    uint32_t code_bit(BitModel& model, uint32_t = 0) {
+    GIM_ALWAYS_INLINE uint32_t code_bit(BitModel& model, uint32_t = 0) {
         const uint64_t bound = (range_ >> 16) * model.zero_probability();
-        const uint32_t bit = code_ >= bound;
-        if (bit) {
+        uint32_t bit = 0;
+        if (code_ >= bound) {
             code_ -= bound;
             range_ -= bound;
+            model.update_one();
+            bit = 1;
         } else {
             range_ = bound;
+            model.update_zero();
         }
-        model.update(bit);
         if (range_ >> 32 == 0) {
             code_ = code_ << 32 | next_word();
             range_ <<= 32;

@@ -165,15 +165,6 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
     return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
 }
 
-BandScratch::BandScratch(uint32_t columns)
-    : rows_(BandWork::row_size(columns) * 2),
-      expected_(BandWork::row_size(columns)),
-      flags_(BandWork::block_size(columns)) {}
-
-BandWork BandScratch::work() {
-    return {rows_.data(), rows_.data() + rows_.size() / 2, expected_.data(), flags_.data()};
-}
-
 void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,
                 const SeamTable* seams) {
     if (from_step == 0) coder.code_base({pyramid.base.data(), pyramid.rows_at(0), pyramid.columns_at(0)});
@@ -192,12 +183,12 @@ void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint3
 std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count, CoefficientKind kind,
                                              const SeamTable* seams) {
     BandModels models(kind);
-    BandScratch scratch(pyramid.columns);
+    OwnBandWork work(pyramid.columns);
     std::vector<std::vector<uint8_t>> streams;
     uint32_t done = 0;
     for (uint32_t level = level_count; level-- > 0;) {
         RangeEncoder coder;
-        BandCoder<RangeEncoder> band_coder(&coder, &models, scratch.work());
+        BandCoder<RangeEncoder> band_coder(&coder, &models, work.view());
         code_steps(band_coder, pyramid, done, level, seams);
         done = pyramid.steps() - level;
         streams.push_back(coder.finish());

@@ -28,18 +28,6 @@ void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
     for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
 }
 
-// What BandCoder works in; columns: of the widest image.
-class BandScratch {
-  public:
-    explicit BandScratch(uint32_t columns);
-    BandWork work();
-
-  private:
-    std::vector<int32_t> rows_;
-    std::vector<uint32_t> expected_;
-    std::vector<uint8_t> flags_;
-};
-
 // The base, if from_step is 0, and the bands of the steps after `from_step` that lead to a level (0: full resolution).
 void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,
                 const SeamTable* seams = nullptr);

@@ -156,13 +156,13 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
     }
     BandModels models(coefficient_kind_of(header));
     BorderModels border_models;
-    BandScratch scratch(widest);
+    OwnBandWork work(widest);
     std::vector<std::vector<uint8_t>> levels;
     for (uint32_t level = header.level_count; level-- > 0;) {
         RangeEncoder encoder;
         code_borders(encoder, border_models, charts_, mates_, borders_[level], level);
         for (Pyramid<int32_t>& chart : bands) {
-            BandCoder<RangeEncoder> coder(&encoder, &models, scratch.work());
+            BandCoder<RangeEncoder> coder(&encoder, &models, work.view());
             const uint32_t done = level + 1 == header.level_count ? 0 : chart.steps() - level - 1;
             code_steps(coder, chart, done, level);
         }

@@ -15,6 +15,8 @@
 
 #include "format/band.h"
 #include "format/bit_model.h"
+#include "format/expectation.h"
+#include "format/inline.h"
 #include "format/rim.h"
 #include "format/trained_models.h"
 
@@ -42,20 +44,6 @@ struct BandModels {
     std::array<std::array<std::array<BitModel, 27>, 3>, 2> sign;
 };
 
-// Memory that BandCoder works in; contents undefined before and after. Rows have a zero triple on either side.
-struct BandWork {
-    static constexpr uint32_t kGuard = 3;
-
-    int32_t* above = nullptr;       // the row above
-    int32_t* current = nullptr;     // this row
-    uint32_t* expected = nullptr;   // what the neighbours but the left one let expect
-    uint8_t* full_above = nullptr;  // block_size(columns) flags: is the block not empty?
-
-    static size_t row_size(uint32_t columns) { return (size_t{columns} + 2) * 3; }
-    static size_t block_size(uint32_t columns) { return size_t{columns} / 8 + 1; }
-};
-
-inline uint32_t magnitude_of(int32_t v) { return static_cast<uint32_t>(v < 0 ? -v : v); }
 inline uint32_t sign_class(int32_t v) { return v > 0 ? 1u : v < 0 ? 2u : 0u; }
 
 // Class of an expected magnitude (in 1/256), and how many raw low bits go with it: half-octaves, and from four units on
@@ -63,7 +51,7 @@ inline uint32_t sign_class(int32_t v) { return v > 0 ? 1u : v < 0 ? 2u : 0u; }
 struct MagnitudeClass {
     uint32_t index = 0, raw_bits = 0;
 };
-inline MagnitudeClass magnitude_class(uint32_t expected) {
+constexpr MagnitudeClass compute_magnitude_class(uint32_t expected) {
     expected /= 4;
     if (expected < 2) return {expected, 0};
     const uint32_t octave = static_cast<uint32_t>(std::bit_width(expected)) - 1;
@@ -72,6 +60,43 @@ inline MagnitudeClass magnitude_class(uint32_t expected) {
     const uint32_t above = half_octave - BandModels::kScaled;
     return {BandModels::kScaled + (above & 1), 1 + above / 2};
 }
+// Most are small: a table of those without raw bits.
+inline constexpr auto kSmallClasses = [] {
+    std::array<uint8_t, 256> classes{};
+    for (uint32_t i = 0; i < classes.size(); ++i)
+        classes[i] = static_cast<uint8_t>(compute_magnitude_class(i * 4).index);
+    return classes;
+}();
+static_assert(compute_magnitude_class(kSmallClasses.size() * 4 - 1).raw_bits == 0);
+static_assert(compute_magnitude_class(kSmallClasses.size() * 4).raw_bits == 1);
+GIM_ALWAYS_INLINE MagnitudeClass magnitude_class(uint32_t expected) {
+    if (expected / 4 < kSmallClasses.size()) return {kSmallClasses[expected / 4], 0};
+    return compute_magnitude_class(expected);
+}
+
+// A coder while many decisions are made. A decoder is copied, so that its state can stay in registers, and copied back.
+template <class Coder>
+class HeldCoder {
+  public:
+    explicit HeldCoder(Coder* coder) : coder_(*coder) {}
+    Coder& get() { return coder_; }
+
+  private:
+    Coder& coder_;
+};
+template <class Coder>
+requires(!Coder::kWrites) class HeldCoder<Coder> {
+  public:
+    explicit HeldCoder(Coder* coder) : original_(*coder), copy_(*coder) {}
+    ~HeldCoder() { original_ = copy_; }
+    HeldCoder(const HeldCoder&) = delete;
+    HeldCoder& operator=(const HeldCoder&) = delete;
+    Coder& get() { return copy_; }
+
+  private:
+    Coder& original_;
+    Coder copy_;
+};
 
 // Writes or fills in bands. Coder is a RangeEncoder or a RangeDecoder:
 //   kWrites; uint32_t code_bit(BitModel&, uint32_t bit), code_raw(uint32_t value, uint32_t count); both return what was
@@ -105,23 +130,12 @@ class BandCoder {
     }
 
   private:
-    // What is known besides the band itself: the band above in the pyramid and those of the same level coded before.
-    struct Surroundings {
-        Orientation orientation = Orientation::kHorizontal;
-        const Band* parent = nullptr;
-        const Band* horizontal = nullptr;
-        const Band* vertical = nullptr;
-        const BandWeights* weights = nullptr;
-        SharedRim rim;
-    };
-
-    static constexpr int32_t kNothing[3] = {0, 0, 0};
+    using Surroundings = BandSurroundings;
 
     bool code_band(const Band& band, const Surroundings& around);
     void code_block_flags(const Band& band, const Surroundings& around, uint32_t row);
-    void expect(const Surroundings& around, uint32_t row, uint32_t begin, uint32_t end);
     bool code_run(const Band& band, const Surroundings& around, uint32_t row, uint32_t begin, uint32_t end);
-    bool code_magnitude(uint32_t set, uint32_t expected, bool not_zero, uint32_t* magnitude);
+    void clear_empty_blocks(uint32_t columns);
 
     Coder& coder_;
     BandModels& models_;
@@ -152,28 +166,29 @@ inline BandModels::BandModels(CoefficientKind coefficients) : kind(coefficients)
     });
 }
 
-// not_zero: known beforehand.
+// *value: in, the magnitude to write; out, the magnitude. not_zero: known beforehand.
 template <class Coder>
-inline bool BandCoder<Coder>::code_magnitude(uint32_t set, uint32_t expected, bool not_zero, uint32_t* value) {
+GIM_ALWAYS_INLINE bool code_magnitude(Coder& coder, BandModels& models, uint32_t set, uint32_t expected, bool not_zero,
+                                      uint32_t* value) {
     const MagnitudeClass c = magnitude_class(expected);
-    auto& unary = models_.magnitude[set][c.index];
+    auto& unary = models.magnitude[set][c.index];
     const uint32_t known = *value;
     const uint32_t known_high = known >> c.raw_bits;
     uint32_t magnitude = not_zero && c.raw_bits == 0 ? 1 : 0;
-    while (magnitude < BandModels::kUnary && coder_.code_bit(unary[magnitude], known_high > magnitude)) ++magnitude;
+    while (magnitude < BandModels::kUnary && coder.code_bit(unary[magnitude], known_high > magnitude)) ++magnitude;
     if (magnitude == BandModels::kUnary) {
         // Elias-gamma of what is left, plus one.
         const uint32_t known_left = known_high >= BandModels::kUnary ? known_high - BandModels::kUnary + 1 : 1;
         const uint32_t known_width = static_cast<uint32_t>(std::bit_width(known_left)) - 1;
         uint32_t width = 0;
-        while (coder_.code_bit(models_.escape[width], known_width > width)) {
+        while (coder.code_bit(models.escape[width], known_width > width)) {
             if (++width + c.raw_bits > BandModels::kMaxMagnitudeBits) return false;
         }
-        magnitude += (1u << width | coder_.code_raw(known_left & ((1u << width) - 1), width)) - 1;
+        magnitude += (1u << width | coder.code_raw(known_left & ((1u << width) - 1), width)) - 1;
     }
     if (c.raw_bits > 0) {
         if (std::bit_width(magnitude) + c.raw_bits > BandModels::kMaxMagnitudeBits) return false;
-        magnitude = magnitude << c.raw_bits | coder_.code_raw(known & ((1u << c.raw_bits) - 1), c.raw_bits);
+        magnitude = magnitude << c.raw_bits | coder.code_raw(known & ((1u << c.raw_bits) - 1), c.raw_bits);
     }
     *value = magnitude;
     return magnitude >> BandModels::kMaxMagnitudeBits == 0;
@@ -202,66 +217,7 @@ void BandCoder<Coder>::code_block_flags(const Band& band, const Surroundings& ar
         }
         const uint32_t above = work_.full_above[b];
         left = coder_.code_bit(models_.block[left + 2 * above + 4 * ((parents > 0) + (parents > 2))], known);
-        work_.full_above[b] = static_cast<uint8_t>(left);
-    }
-}
-
-// Weighs the neighbours of columns begin .. end-1 that are known before the row is: in 1/256 of the magnitude that they let
-// expect.
-template <class Coder>
-void BandCoder<Coder>::expect(const Surroundings& around, uint32_t row, uint32_t begin, uint32_t end) {
-    const BandWeights &first = around.weights[0], &later = around.weights[1];
-    uint32_t* expected = work_.expected + BandWork::kGuard;
-    const int32_t* above = work_.above + BandWork::kGuard;
-    for (auto i = static_cast<int32_t>(begin * 3); i < static_cast<int32_t>(end * 3); i += 3) {
-        for (int32_t k = 0; k < 3; ++k) {
-            const BandWeights& w = k == 0 ? first : later;
-            expected[i + k] = w.constant + w.above * magnitude_of(above[i + k]) +
-                              w.corners * (magnitude_of(above[i + k - 3]) + magnitude_of(above[i + k + 3]));
-        }
-    }
-    if (around.parent && row / 2 < around.parent->rows) {
-        const int32_t* from = around.parent->row(row / 2);
-        const int32_t* up = row / 2 > 0 ? around.parent->row(row / 2 - 1) : kNothing;
-        const int32_t* down = row / 2 + 1 < around.parent->rows ? around.parent->row(row / 2 + 1) : kNothing;
-        const uint32_t parents = around.parent->columns, parent_end = std::min((end + 1) / 2, parents);
-        for (uint32_t column = begin / 2; column < parent_end; ++column) {
-            const int32_t* left = column > 0 ? from + (column - 1) * 3 : kNothing;
-            const int32_t* right = column + 1 < parents ? from + (column + 1) * 3 : kNothing;
-            const uint32_t i = up == kNothing ? 0 : column * 3, j = down == kNothing ? 0 : column * 3;
-            for (uint32_t k = 0; k < 3; ++k) {
-                const BandWeights& w = k == 0 ? first : later;
-                const uint32_t e = w.parent * magnitude_of(from[column * 3 + k]) +
-                                   w.beside_parent * (magnitude_of(up[i + k]) + magnitude_of(down[j + k]) +
-                                                      magnitude_of(left[k]) + magnitude_of(right[k]));
-                expected[column * 6 + k] += e;
-                expected[column * 6 + 3 + k] += e;  // past the end is room
-            }
-        }
-    }
-    // A row of another band of the same level, `shift` columns further (-1, 0, 1); it has up to one row or column less, or
-    // more.
-    const auto add = [&](const Band& other, uint32_t from_row, int32_t shift, uint32_t first_weight,
-                         uint32_t later_weight) {
-        if (from_row >= other.rows) return;
-        const int32_t* from = other.row(from_row);
-        const int32_t add_end = std::min(static_cast<int32_t>(end), static_cast<int32_t>(other.columns) - shift);
-        for (int32_t i = std::max(static_cast<int32_t>(begin), -shift) * 3; i < add_end * 3; i += 3) {
-            expected[i] += first_weight * magnitude_of(from[i + shift * 3]);
-            expected[i + 1] += later_weight * magnitude_of(from[i + shift * 3 + 1]);
-            expected[i + 2] += later_weight * magnitude_of(from[i + shift * 3 + 2]);
-        }
-    };
-    // Those around the sample: horizontal ones of two rows, vertical ones of two columns.
-    if (around.horizontal) {
-        for (uint32_t below = 0; below < 2; ++below) {
-            add(*around.horizontal, row + below, 0, first.horizontal, later.horizontal);
-            if (around.orientation == Orientation::kVertical)
-                add(*around.horizontal, row + below, -1, first.horizontal, later.horizontal);
-        }
-    }
-    if (around.vertical) {
-        for (int32_t shift = 0; shift < 2; ++shift) add(*around.vertical, row, shift, first.vertical, later.vertical);
+        work_.full_above[b] = left;
     }
 }
 
@@ -269,70 +225,88 @@ void BandCoder<Coder>::expect(const Surroundings& around, uint32_t row, uint32_t
 template <class Coder>
 bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, uint32_t row, uint32_t begin,
                                 uint32_t end) {
-    expect(around, row, begin, end);
+    expect(around, row, begin, end, work_);
+    HeldCoder<Coder> held(&coder_);
+    auto& coder = held.get();
+    BandModels& models = models_;
     const BandWeights &first = around.weights[0], &later = around.weights[1];
-    const int32_t* above = work_.above + BandWork::kGuard;
-    int32_t* current = work_.current + BandWork::kGuard;
-    const uint32_t* expected = work_.expected + BandWork::kGuard;
+    const bool paired = models.kind == CoefficientKind::kInFrames;
+    const bool across = around.orientation == Orientation::kVertical;
+    const bool has_copies = around.rim && (across || row == 0 || row + 1 == band.rows);
     int32_t* values = band.row(row);
+    const int32_t* values_above = row > 0 ? values - size_t{band.columns} * 3 : nullptr;
     const bool has_parent = around.parent && row / 2 < around.parent->rows;
-    const bool shared = static_cast<bool>(around.rim), across = around.orientation == Orientation::kVertical;
-    const bool rim_row = shared && !across && (row == 0 || row + 1 == band.rows);
-    const auto on_rim = [&](uint32_t column) {
-        return rim_row || (shared && across && (column == 0 || column + 1 == band.columns));
+    const int32_t* parents = has_parent ? around.parent->row(row / 2) : nullptr;
+    const uint32_t parents_end = has_parent ? 2 * around.parent->columns : 0;  // columns that have one
+    // The sign of component k, whose magnitude is not 0.
+    const auto code_sign = [&](uint32_t k, uint32_t column) GIM_ALWAYS_INLINE_LAMBDA {
+        const uint32_t i = column * 3 + k;
+        const uint32_t above = values_above ? sign_class(values_above[i]) : 0;
+        const uint32_t left = column > 0 ? sign_class(values[i - 3]) : 0;
+        const uint32_t of_parent = column < parents_end ? sign_class(parents[column / 2 * 3 + k]) : 0;
+        auto& signs = models.sign[std::min(k, 1u)][static_cast<size_t>(around.orientation)];
+        return coder.code_bit(signs[(above * 3 + left) * 3 + of_parent], values[i] < 0) != 0;
     };
+    uint32_t left[3] = {0, 0, 0};  // magnitudes of the triple before: what a run begins behind is empty
     for (uint32_t column = begin; column < end; ++column) {
-        const int32_t* parent =
-            has_parent && column / 2 < around.parent->columns ? around.parent->row(row / 2) + column / 2 * 3 : kNothing;
-        const auto at = static_cast<int32_t>(column * 3);
-        if (on_rim(column) && around.rim.is_copy(around.orientation, row, column)) continue;
-        const auto code = [&](uint32_t k, uint32_t set, uint32_t e, bool not_zero) {
-            const int32_t i = at + static_cast<int32_t>(k);
-            uint32_t magnitude = magnitude_of(values[i]);
-            if (!code_magnitude(set, e, not_zero, &magnitude)) return false;
-            auto& signs = models_.sign[std::min(k, 1u)][static_cast<size_t>(around.orientation)];
-            const uint32_t sign = (sign_class(above[i]) * 3 + sign_class(current[i - 3])) * 3 + sign_class(parent[k]);
-            const bool negative = magnitude != 0 && coder_.code_bit(signs[sign], values[i] < 0);
-            values[i] = current[i] = negative ? -static_cast<int32_t>(magnitude) : static_cast<int32_t>(magnitude);
-            return true;
-        };
-        // Magnitudes of component k on the left and above.
-        const auto beside = [&](int32_t k) { return magnitude_of(current[at + k - 3]) + magnitude_of(above[at + k]); };
-        const uint32_t beside1 = beside(1), beside2 = beside(2);
-
-        const uint32_t e0 =
-            expected[at] + first.left * magnitude_of(current[at - 3]) + first.cross * (beside1 + beside2);
-        if (!code(0, 0, e0, false)) return false;
-
-        const uint32_t magnitude0 = magnitude_of(current[at]);
-        const uint32_t e1 = expected[at + 1] + later.left * magnitude_of(current[at - 2]) + later.cross * beside2 +
-                            later.first * magnitude0;
-        uint32_t e2 = expected[at + 2] + later.left * magnitude_of(current[at - 1]) + later.cross * beside1 +
-                      later.first * magnitude0;
-        const bool paired = models_.kind == CoefficientKind::kInFrames;
+        const size_t at = size_t{column} * 3;
+        uint32_t* magnitudes = work_.magnitudes + at;  // of the row above still
+        const uint32_t above1 = magnitudes[1], above2 = magnitudes[2];
+        std::fill_n(magnitudes, 3, 0u);
+        if (has_copies && (!across || column == 0 || column + 1 == band.columns) &&
+            around.rim.is_copy(around.orientation, row, column)) {
+            std::fill_n(left, 3, 0u);
+            continue;
+        }
+        const auto code = [&](uint32_t k, uint32_t set, uint32_t e, bool not_zero, uint32_t* magnitude)
+                              GIM_ALWAYS_INLINE_LAMBDA {
+                                  *magnitude = magnitude_of(values[at + k]);
+                                  if (!code_magnitude(coder, models, set, e, not_zero, magnitude)) return false;
+                                  if (*magnitude == 0) return true;
+                                  magnitudes[k] = *magnitude;
+                                  const auto value = static_cast<int32_t>(*magnitude);
+                                  values[at + k] = code_sign(k, column) ? -value : value;
+                                  return true;
+                              };
+        const uint32_t* expected = work_.expected + at;
+        const uint32_t beside1 = left[1] + above1, beside2 = left[2] + above2;
+        uint32_t magnitude[3] = {0, 0, 0};
+        const uint32_t e0 = expected[0] + first.left * left[0] + first.cross * (beside1 + beside2);
+        if (!code(0, 0, e0, false, &magnitude[0])) return false;
+        const uint32_t by_first = later.first * magnitude[0];
+        const uint32_t e1 = expected[1] + later.left * left[1] + later.cross * beside2 + by_first;
+        const uint32_t e2 = expected[2] + later.left * left[2] + later.cross * beside1 + by_first;
+        std::copy_n(magnitude, 3, left);
         if (paired) {
             const uint32_t any = (values[at + 1] | values[at + 2]) != 0;
-            if (!coder_.code_bit(models_.pair[magnitude_class(e1 + e2).index][magnitude0 != 0], any)) {
-                current[at + 1] = current[at + 2] = 0;
-                continue;
-            }
+            if (!coder.code_bit(models.pair[magnitude_class(e1 + e2).index][magnitude[0] != 0], any)) continue;
         }
-        if (!code(1, 1, e1, false)) return false;
-        const uint32_t magnitude1 = magnitude_of(current[at + 1]);
-        if (!code(2, magnitude1 != 0 ? 2 : 1, e2 + later.second * magnitude1, paired && magnitude1 == 0)) return false;
+        if (!code(1, 1, e1, false, &magnitude[1])) return false;
+        if (!code(2, magnitude[1] != 0 ? 2 : 1, e2 + later.second * magnitude[1], paired && magnitude[1] == 0,
+                  &magnitude[2])) {
+            return false;
+        }
+        std::copy_n(magnitude, 3, left);
     }
     return true;
 }
 
+// Of a row that has magnitudes of the row above there: that one belongs to other blocks.
+template <class Coder>
+void BandCoder<Coder>::clear_empty_blocks(uint32_t columns) {
+    for (uint32_t begin = 0; begin < columns; begin += 8) {
+        if (!work_.full_above[begin / 8])
+            std::fill_n(work_.magnitudes + size_t{begin} * 3, std::min(columns - begin, 8u) * 3, 0u);
+    }
+}
+
 template <class Coder>
 bool BandCoder<Coder>::code_band(const Band& band, const Surroundings& around) {
-    const size_t row_size = BandWork::row_size(band.columns);
     const uint32_t blocks = (band.columns + 7) / 8;
-    std::fill_n(work_.above, row_size, 0);
-    std::fill_n(work_.full_above, blocks, uint8_t{1});
+    std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // with the room on either side
+    std::fill_n(work_.full_above, blocks, 1u);
     for (uint32_t row = 0; row < band.rows; ++row) {
         if (row % 8 == 0) code_block_flags(band, around, row);
-        std::fill_n(work_.current, row_size, 0);
         if constexpr (!Coder::kWrites) std::fill_n(band.row(row), size_t{band.columns} * 3, 0);
         for (uint32_t b = 0; b < blocks;) {
             const uint32_t first = b++;
@@ -340,7 +314,7 @@ bool BandCoder<Coder>::code_band(const Band& band, const Surroundings& around) {
             while (b < blocks && work_.full_above[b]) ++b;
             if (!code_run(band, around, row, first * 8, std::min(band.columns, b * 8))) return false;
         }
-        std::swap(work_.above, work_.current);
+        if (row % 8 == 0) clear_empty_blocks(band.columns);
     }
     return true;
 }

@@ -5,51 +5,59 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace gim {
 
 class BitModel {
   public:
-    BitModel() = default;
+    BitModel() : BitModel(32768, 0) {}
     // That starts as if it had learnt this much.
     constexpr BitModel(uint16_t zero_probability, uint8_t age)
-        : quick_(zero_probability), slow_(zero_probability), age_(age) {}
+        : state_(zero_probability * uint64_t{0x10001} | uint64_t{age} << 32) {}
 
     // Probability of a zero in 1/65536, 1 .. 65535.
-    uint32_t zero_probability() const { return (uint32_t{quick_} + slow_) >> 1; }
+    uint32_t zero_probability() const { return (quick() + slow()) >> 1; }
 
-    void update(uint32_t bit) {
-        const Rate rate = kRates[age_];
-        const uint32_t target = bit ? 0 : 65536;  // never reached: the shifts round towards the old value
-        if (bit) {
-            quick_ = static_cast<uint16_t>(quick_ - (quick_ >> rate.quick));
-            slow_ = static_cast<uint16_t>(slow_ - (slow_ >> rate.slow));
-        } else {
-            quick_ = static_cast<uint16_t>(quick_ + ((target - quick_) >> rate.quick));
-            slow_ = static_cast<uint16_t>(slow_ + ((target - slow_) >> rate.slow));
-        }
-        age_ = rate.next_age;
+    // x >> shift is written x * 2^(16 - shift) >> 16, which is quicker. Neither estimate carries over into its neighbour: both
+    // stay within 1 .. 65535, because the shifts round towards the old value.
+    void update_zero() {
+        const Learning learning = kLearning[age()];
+        const uint32_t change =
+            ((65536 - quick()) * learning.quick >> 16) + ((65536 - slow()) * learning.slow & 0xFFFF0000);
+        state_ = uint64_t{estimates() + change} | learning.next_age;
     }
+    void update_one() {
+        const Learning learning = kLearning[age()];
+        const uint32_t change = (quick() * learning.quick >> 16) + (slow() * learning.slow & 0xFFFF0000);
+        state_ = uint64_t{estimates() - change} | learning.next_age;
+    }
+    void update(uint32_t bit) { bit ? update_one() : update_zero(); }
 
   private:
-    struct Rate {
-        uint8_t quick, slow, next_age;
+    struct Learning {
+        uint64_t next_age;     // in place
+        uint32_t quick, slow;  // parts of 65536
     };
     static constexpr uint8_t kOld = 112;
-    static constexpr std::array<Rate, kOld + 1> kRates = [] {
-        std::array<Rate, kOld + 1> rates{};
-        for (uint8_t age = 0; age <= kOld; ++age) {
-            uint8_t shift = 1;  // 1 + the rounded down log2 of age + 2
+    static constexpr std::array<Learning, kOld + 1> kLearning = [] {
+        std::array<Learning, kOld + 1> all{};
+        for (uint32_t age = 0; age <= kOld; ++age) {
+            uint32_t shift = 1;  // 1 + the rounded down log2 of age + 2
             while ((2 * age + 4) >> (shift + 1) != 0) ++shift;
-            rates[age] = {std::min<uint8_t>(shift, 4), std::min<uint8_t>(shift, 7),
-                          static_cast<uint8_t>(std::min<int>(age + 1, kOld))};
+            all[age] = {uint64_t{std::min<uint32_t>(age + 1, kOld)} << 32, 65536u >> std::min(shift, 4u),
+                        65536u >> std::min(shift, 7u)};
         }
-        return rates;
+        return all;
     }();
 
-    uint16_t quick_ = 32768, slow_ = 32768;
-    uint16_t age_ = 0;  // not a byte: stores of bytes would make the compiler reload the coder's state
+    uint32_t estimates() const { return static_cast<uint32_t>(state_); }
+    uint32_t quick() const { return estimates() & 0xFFFF; }
+    uint32_t slow() const { return estimates() >> 16; }
+    size_t age() const { return static_cast<size_t>(state_ >> 32); }
+
+    uint64_t state_;  // the quick estimate, the slow one, 16 bits each, and the age
 };
 
 }  // namespace gim

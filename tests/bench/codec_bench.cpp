@@ -101,14 +101,11 @@ void entropy_decoding(benchmark::State& state) {
         for (int k = 0; k < 3; ++k) units.push_back(static_cast<int32_t>(std::lround((p[k] - low[k]) * 1500)));
     Pyramid<int32_t> bands = analyse<Reversible53>(units, kSide);
     const auto streams = code_bands(bands, 1);
-    std::vector<int32_t> rows(BandWork::row_size(129) * 2);
-    std::vector<uint32_t> expected(BandWork::row_size(129));
-    std::vector<uint8_t> flags(BandWork::block_size(129));
-    const BandWork work = {rows.data(), rows.data() + BandWork::row_size(129), expected.data(), flags.data()};
+    OwnBandWork work(129);
     for (auto _ : state) {
         RangeDecoder decoder(streams[0]);
         BandModels models(CoefficientKind::kPlain);
-        BandCoder coder(&decoder, &models, work);
+        BandCoder coder(&decoder, &models, work.view());
         coder.code_base({bands.base.data(), 2, 2});
         for (uint32_t e = 0; e < 8; ++e) {
             const LevelBands parents = bands_of(bands, e ? e - 1 : 0);

@@ -122,10 +122,7 @@ TEST(BandCoder, RandomLevelsRoundTrip) {
         }
         for (const auto& s : sent) got.emplace_back(s.size(), -77);
         const uint32_t widest = (1u << top) + 2;
-        std::vector<int32_t> rows(BandWork::row_size(widest) * 2);
-        std::vector<uint32_t> expected(BandWork::row_size(widest));
-        std::vector<uint8_t> flags(BandWork::block_size(widest));
-        const BandWork work = {rows.data(), rows.data() + BandWork::row_size(widest), expected.data(), flags.data()};
+        OwnBandWork work(widest);
         const auto level = [&](std::vector<std::vector<int32_t>>& all, uint32_t e) {
             const uint32_t h = 1u << e;
             return LevelBands{
@@ -134,7 +131,7 @@ TEST(BandCoder, RandomLevelsRoundTrip) {
         const auto kind = round % 2 ? CoefficientKind::kPlain : CoefficientKind::kInFrames;
         const auto code_all = [&](auto& coder, std::vector<std::vector<int32_t>>& all) {
             BandModels models(kind);
-            BandCoder band_coder(&coder, &models, work);
+            BandCoder band_coder(&coder, &models, work.view());
             for (uint32_t e = 0; e < top; ++e) {
                 const LevelBands parents = level(all, e ? e - 1 : 0);
                 ASSERT_TRUE(band_coder.code_level(level(all, e), e ? &parents : nullptr));
@@ -156,13 +153,11 @@ TEST(BandCoder, AnyBytesDecodeOrAreRefused) {
     for (int round = 0; round < 500; ++round) {
         std::vector<uint8_t> stream(random.below(300));
         for (uint8_t& b : stream) b = static_cast<uint8_t>(round % 3 == 0 ? 0xFF : random.next());
-        std::vector<int32_t> a(17 * 16 * 3), b(16 * 17 * 3), c(16 * 16 * 3), rows(BandWork::row_size(17) * 2);
-        std::vector<uint32_t> expected(BandWork::row_size(17));
-        std::vector<uint8_t> flags(BandWork::block_size(17));
+        std::vector<int32_t> a(17 * 16 * 3), b(16 * 17 * 3), c(16 * 16 * 3);
+        OwnBandWork work(17);
         RangeDecoder decoder(stream);
         BandModels models(round % 2 ? CoefficientKind::kPlain : CoefficientKind::kInFrames);
-        BandCoder coder(&decoder, &models,
-                        {rows.data(), rows.data() + BandWork::row_size(17), expected.data(), flags.data()});
+        BandCoder coder(&decoder, &models, work.view());
         refused += !coder.code_level({{a.data(), 17, 16}, {b.data(), 16, 17}, {c.data(), 16, 16}}, nullptr) ||
                    !decoder.intact();
         for (const int32_t v : a) ASSERT_LT(magnitude_of(v), 1u << 25);

@@ -51,18 +51,6 @@ struct Image {
     std::vector<Level> levels;
 };
 
-struct Work {
-    std::vector<int32_t> rows;
-    std::vector<uint32_t> expected;
-    std::vector<uint8_t> flags;
-
-    explicit Work(uint32_t columns)
-        : rows(BandWork::row_size(columns) * 2),
-          expected(BandWork::row_size(columns)),
-          flags(BandWork::block_size(columns)) {}
-    BandWork get() { return {rows.data(), rows.data() + rows.size() / 2, expected.data(), flags.data()}; }
-};
-
 // A coder that only notes what it is asked to code.
 struct Listener {
     static constexpr bool kWrites = true;
@@ -113,7 +101,7 @@ Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
         if (Status s = read_seams(header, file, 0, &seams); s != Status::kOk) return s;
         for (Level& level : positions.levels) level.rim = OwnSharedRim(&seams, level.columns);
     }
-    Work work(header.side(0));
+    OwnBandWork work(header.side(0));
     size_t done = 0;
     for (uint32_t l = header.level_count_of(0); l-- > 0;) {
         Chunk chunk;
@@ -122,7 +110,7 @@ Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
         if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
         if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
         RangeDecoder decoder(payload);
-        BandCoder<RangeDecoder> coder(&decoder, &models, work.get());
+        BandCoder<RangeDecoder> coder(&decoder, &models, work.view());
         const size_t end = positions.levels.size() - l;
         if (!code_levels(coder, positions, done, end) || !decoder.intact()) return Status::kMalformed;
         done = end;
@@ -138,9 +126,9 @@ Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
         if (Status s = parse_plane(payload, header, 0, no_limits, &stored); s != Status::kOk) return s;
         Image plane = blank_image(CoefficientKind::kPlanes, stored.side_exponents[0]);
         BandModels plane_models(plane.kind);
-        Work plane_work(stored.side(0));
+        OwnBandWork plane_work(stored.side(0));
         RangeDecoder decoder(stored.stream);
-        BandCoder<RangeDecoder> coder(&decoder, &plane_models, plane_work.get());
+        BandCoder<RangeDecoder> coder(&decoder, &plane_models, plane_work.view());
         if (!code_levels(coder, plane, 0, plane.levels.size()) || !decoder.intact()) return Status::kMalformed;
         images->push_back(std::move(plane));
     }
@@ -276,8 +264,8 @@ std::string fit_states(std::vector<Image>& images, CoefficientKind kind) {
         std::unordered_map<const BitModel*, size_t> number;
         models.for_each([&](BitModel& model) { number.emplace(&model, number.size()); });
         Listener listener;
-        Work work(image.levels.back().columns);
-        BandCoder<Listener> coder(&listener, &models, work.get());
+        OwnBandWork work(image.levels.back().columns);
+        BandCoder<Listener> coder(&listener, &models, work.view());
         (void)code_levels(coder, image, 0, image.levels.size());
         std::vector<Bits> bits(number.size());
         for (const auto& [model, bit] : listener.decisions) {
@@ -331,8 +319,8 @@ struct Meter {
 double coded_bytes(Image& image) {
     Meter meter;
     BandModels models(image.kind);
-    Work work(image.levels.back().columns);
-    BandCoder<Meter> coder(&meter, &models, work.get());
+    OwnBandWork work(image.levels.back().columns);
+    BandCoder<Meter> coder(&meter, &models, work.view());
     (void)code_levels(coder, image, 0, image.levels.size());
     return meter.bits / 8;
 }

@@ -1,0 +1,121 @@
+#include "format/expectation.h"
+
+#include <algorithm>
+
+namespace gim {
+namespace {
+
+constexpr size_t kRows = 5;
+
+constexpr size_t row_size(uint32_t columns) { return (size_t{columns} + 2) * 3; }
+
+constexpr int32_t kNothing[3] = {0, 0, 0};
+
+// |from|, also where columns begin .. end-1 lie outside the band (by one at most).
+void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
+    const ptrdiff_t inner_begin = std::max<ptrdiff_t>(begin, 0);
+    const ptrdiff_t inner_end = row < band.rows ? std::clamp<ptrdiff_t>(band.columns, inner_begin, end) : inner_begin;
+    std::fill(to + begin * 3, to + inner_begin * 3, 0u);
+    if (inner_begin < inner_end) {
+        const int32_t* from = band.row(row);
+        for (ptrdiff_t i = inner_begin * 3; i < inner_end * 3; ++i) to[i] = magnitude_of(from[i]);
+    }
+    std::fill(to + inner_end * 3, to + end * 3, 0u);
+}
+
+// Adds those of another row.
+void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
+    if (row >= band.rows) return;
+    const int32_t* from = band.row(row);
+    const ptrdiff_t inner_end = std::min<ptrdiff_t>(band.columns, end);
+    for (ptrdiff_t i = std::max<ptrdiff_t>(begin, 0) * 3; i < inner_end * 3; ++i) to[i] += magnitude_of(from[i]);
+}
+
+// What the parent and its four neighbours let expect of the two columns that have it, of an even row and the next.
+void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row, uint32_t begin, uint32_t end,
+                   uint32_t* to) {
+    const uint32_t inside = row < parent.rows ? std::clamp(parent.columns, begin, end) : begin;
+    if (begin < inside) {
+        const int32_t* from = parent.row(row);
+        const int32_t* up = row > 0 ? parent.row(row - 1) : kNothing;
+        const int32_t* down = row + 1 < parent.rows ? parent.row(row + 1) : kNothing;
+        for (uint32_t column = begin; column < inside; ++column) {
+            const size_t at = size_t{column} * 3;
+            const int32_t* left = column > 0 ? from + at - 3 : kNothing;
+            const int32_t* right = column + 1 < parent.columns ? from + at + 3 : kNothing;
+            const int32_t* above = up == kNothing ? kNothing : up + at;
+            const int32_t* below = down == kNothing ? kNothing : down + at;
+            for (size_t k = 0; k < 3; ++k) {
+                const BandWeights& w = weights[k > 0];
+                to[2 * at + k] = to[2 * at + 3 + k] =
+                    w.parent * magnitude_of(from[at + k]) +
+                    w.beside_parent * (magnitude_of(above[k]) + magnitude_of(below[k]) + magnitude_of(left[k]) +
+                                       magnitude_of(right[k]));
+            }
+        }
+    }
+    std::fill(to + size_t{inside} * 6, to + size_t{end} * 6, 0u);
+}
+
+// The sum of all that there is.
+template <bool kParent, Orientation kOrientation>
+void weigh(const BandWeights* weights, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+    const BandWeights first = weights[0], later = weights[1];
+    const uint32_t *above = work.magnitudes, *parents = work.parents, *horizontal = work.horizontal,
+                   *vertical = work.vertical;
+    uint32_t* __restrict expected = work.expected;
+    const auto weigh_one = [&](const BandWeights& w, ptrdiff_t i) {
+        uint32_t e = w.constant + w.above * above[i] + w.corners * (above[i - 3] + above[i + 3]);
+        if constexpr (kParent) e += parents[i];
+        if constexpr (kOrientation == Orientation::kVertical) e += w.horizontal * (horizontal[i - 3] + horizontal[i]);
+        if constexpr (kOrientation == Orientation::kDiagonal)
+            e += w.horizontal * horizontal[i] + w.vertical * (vertical[i] + vertical[i + 3]);
+        expected[i] = e;
+    };
+    for (ptrdiff_t i = begin * 3; i < end * 3; i += 3) {
+        weigh_one(first, i);
+        weigh_one(later, i + 1);
+        weigh_one(later, i + 2);
+    }
+}
+
+template <Orientation kOrientation>
+void weigh_with_parent(const BandSurroundings& around, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+    if (around.parent)
+        weigh<true, kOrientation>(around.weights, begin, end, work);
+    else
+        weigh<false, kOrientation>(around.weights, begin, end, work);
+}
+
+}  // namespace
+
+BandWork::BandWork(uint32_t* memory, uint32_t columns) {
+    for (uint32_t** row : {&magnitudes, &expected, &parents, &horizontal, &vertical}) {
+        *row = memory + 3;
+        memory += row_size(columns);
+    }
+    full_above = memory;
+}
+
+size_t BandWork::size(uint32_t columns) { return row_size(columns) * kRows + columns / 8 + 1; }
+
+void expect(const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end, const BandWork& work) {
+    const auto first = static_cast<ptrdiff_t>(begin), last = static_cast<ptrdiff_t>(end);
+    if (around.parent && row % 2 == 0)
+        weigh_parents(*around.parent, around.weights, row / 2, begin / 2, (end + 1) / 2, work.parents);
+    switch (around.orientation) {
+        case Orientation::kHorizontal:
+            return weigh_with_parent<Orientation::kHorizontal>(around, first, last, work);
+        case Orientation::kVertical:
+            load_magnitudes(*around.horizontal, row, first - 1, last, work.horizontal);
+            add_magnitudes(*around.horizontal, row + 1, first - 1, last, work.horizontal);
+            return weigh_with_parent<Orientation::kVertical>(around, first, last, work);
+        case Orientation::kDiagonal:
+            load_magnitudes(*around.horizontal, row, first, last, work.horizontal);
+            add_magnitudes(*around.horizontal, row + 1, first, last, work.horizontal);
+            load_magnitudes(*around.vertical, row, first, last + 1, work.vertical);
+            return weigh_with_parent<Orientation::kDiagonal>(around, first, last, work);
+    }
+}
+
+}  // namespace gim
