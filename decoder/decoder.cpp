@@ -47,12 +47,12 @@ Status open_image(const gim_info* info, const void* bytes, size_t size, uint32_t
     return image < header->image_count() ? Status::kOk : Status::kBadArgument;
 }
 
-// `out->header` is of a file of squares.
-Status open_level(std::span<const uint8_t> file, uint32_t image, uint32_t level, Level* out) {
+// `out->header` is of a file of squares. out->coarsest is only sought up to `most`, at least `level`.
+Status open_level(std::span<const uint8_t> file, uint32_t image, uint32_t level, uint32_t most, Level* out) {
     if (Status s = read_seams(out->header, file, image, &out->seams); s != Status::kOk) return s;
     const uint32_t steps = out->header.side(image) - 1;
     out->coarsest = 0;
-    while (out->coarsest + 1 < out->header.level_count_of(image) &&
+    while (out->coarsest < most && out->coarsest + 1 < out->header.level_count_of(image) &&
            level_is_closed(out->seams, (steps >> (out->coarsest + 1)) + 1))
         ++out->coarsest;
     if (level > out->coarsest) return Status::kNoSuchLevel;
@@ -68,7 +68,7 @@ uint64_t scratch_size(uint32_t side) {
 }
 
 Status decode(std::span<const uint8_t> file, uint32_t image, uint32_t level, const Memory& scratch, Level* out) {
-    if (Status s = open_level(file, image, level, out); s != Status::kOk) return s;
+    if (Status s = open_level(file, image, level, level, out); s != Status::kOk) return s;
     if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
     if (scratch.size < scratch_size(out->side)) return Status::kScratchTooSmall;
     Arena arena(scratch.bytes);
@@ -76,18 +76,15 @@ Status decode(std::span<const uint8_t> file, uint32_t image, uint32_t level, con
     return decode_level(out->header, file, image, level, out->seams, out->ws, &out->samples);
 }
 
-// Calls f(vertex, sample) for every vertex of the closed mesh with its first sample.
+// The vertices of the closed mesh with their first samples, in runs along a row: f(vertex, sample, count).
 template <class F>
-void for_each_vertex(const Level& level, const F& f) {
+void for_each_run(const Level& level, const F& f) {
     const uint32_t side = level.side;
     uint32_t next = 0;
     for (uint32_t k = 0; k < ring_length(side); ++k) {
-        if (level.ws.class_of[k] != next) continue;
-        const GridPoint p = ring_point(side, k);
-        f(next++, p);
+        if (level.ws.class_of[k] == next) f(next++, ring_point(side, k), 1);
     }
-    for (uint32_t r = 1; r + 1 < side; ++r)
-        for (uint32_t c = 1; c + 1 < side; ++c) f(next++, GridPoint{r, c});
+    for (uint32_t r = 1; r + 1 < side; ++r, next += side - 2) f(next, GridPoint{r, 1}, side - 2);
 }
 
 }  // namespace
@@ -155,7 +152,7 @@ gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t s
     if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
     if (l.header.layout == FileLayout::kCharts)
         return code(chart_level_info(l.header, span_of(bytes, size), limits_of(&info->limits), level, level_info));
-    if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
+    if (Status s = open_level(span_of(bytes, size), image, level, UINT32_MAX, &l); s != Status::kOk) return code(s);
     Chunk chunk;
     uint64_t offset = 0;
     if (Status s = find_level_chunk(l.header, level, &chunk, &offset); s != Status::kOk) return code(s);
@@ -186,25 +183,28 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
                                       {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
     if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
         return code(s);
-    for_each_vertex(l, [&](uint32_t v, GridPoint p) {
-        to_object(l.header, l.samples + (size_t{p.row} * l.side + p.column) * 3, positions + size_t{v} * 3);
+    const auto at = [&l](GridPoint p) { return (size_t{p.row} * l.side + p.column) * 3; };
+    for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
+        to_object(l.header, l.samples + at(p), positions + size_t{v} * 3, count);
     });
     if (normals) {
         sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, l.ws.normals);
-        for_each_vertex(l, [&](uint32_t v, GridPoint p) {
-            std::copy_n(l.ws.normals + (size_t{p.row} * l.side + p.column) * 3, 3, normals + size_t{v} * 3);
+        for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
+            std::copy_n(l.ws.normals + at(p), size_t{count} * 3, normals + size_t{v} * 3);
         });
     }
     if (texcoords) {
         const float last = static_cast<float>(l.side - 1);
-        for_each_vertex(l, [&](uint32_t v, GridPoint p) {
-            texcoords[size_t{v} * 2] = static_cast<float>(p.column) / last;
-            texcoords[size_t{v} * 2 + 1] = static_cast<float>(p.row) / last;
+        for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
+            for (uint32_t i = 0; i < count; ++i) {
+                texcoords[size_t{v + i} * 2] = static_cast<float>(p.column + i) / last;
+                texcoords[size_t{v + i} * 2 + 1] = static_cast<float>(p.row) / last;
+            }
         });
     }
     if (triangles) {
         const VertexNumbers numbers = {l.side, l.ws.class_of, l.class_count};
-        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.row_ids, triangles);
+        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.triangulate, triangles);
     }
     return code(Status::kOk);
 }
@@ -220,7 +220,7 @@ gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size,
                                       {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
     if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
         return code(s);
-    for (size_t i = 0; i < size_t{l.side} * l.side; ++i) to_object(l.header, l.samples + i * 3, positions + i * 3);
+    to_object(l.header, l.samples, positions, size_t{l.side} * l.side);
     if (normals) sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, normals);
     if (texcoords) {
         const float last = static_cast<float>(l.side - 1);
@@ -231,7 +231,7 @@ gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size,
     }
     if (triangles) {
         const VertexNumbers numbers = {l.side, nullptr, 0};
-        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.row_ids, triangles);
+        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.triangulate, triangles);
     }
     return code(Status::kOk);
 }
@@ -272,7 +272,7 @@ gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, 
         if (class_of) return code(Status::kBadArgument);
         return code(count_chart_paths(l.header, span_of(bytes, size), limits_of(&info->limits), level, path_count));
     }
-    if (Status s = open_level(span_of(bytes, size), image, level, &l); s != Status::kOk) return code(s);
+    if (Status s = open_level(span_of(bytes, size), image, level, level, &l); s != Status::kOk) return code(s);
     if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
     if (path_count) *path_count = l.seams.path_count;
     return code(Status::kOk);

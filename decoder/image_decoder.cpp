@@ -87,7 +87,7 @@ PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
 
 ImageWorkspace lay_out(uint32_t side, Arena* arena) {
     ImageWorkspace ws{lay_out_plane(side, arena)};
-    ws.row_ids = arena->take<uint32_t>(size_t{side} * 2);
+    ws.triangulate = {arena->take<float>(size_t{side} * 6), arena->take<uint32_t>(side - 1)};
     // The bands are done with when normals are computed, but hold a little less.
     ws.normals = arena->take<float>(size_t{side} * side * 3);
     return ws;

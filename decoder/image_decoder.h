@@ -2,11 +2,13 @@
 // A "unit" is one quantization step; position = origin + step * unit value.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
 #include "decoder/arena.h"
 #include "decoder/pyramid_decoder.h"
+#include "decoder/triangulate.h"
 #include "format/container.h"
 #include "format/fuse.h"
 #include "format/seam.h"
@@ -23,7 +25,7 @@ struct PlaneWorkspace {
 // Everything that decoding one level of an image needs.
 struct ImageWorkspace : PlaneWorkspace {
     float* normals = nullptr;
-    uint32_t* row_ids = nullptr;
+    TriangulateWork triangulate = {};
 };
 
 // The pyramid of a square of side 2^exponent + 1.
@@ -44,9 +46,12 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
 // The sideband of one image, checked. kMalformed also when its finest level is not closed.
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams);
 
-// Units to object space.
-inline void to_object(const Header& header, const float* units, float* position) {
-    for (int k = 0; k < 3; ++k) position[k] = header.origin[static_cast<size_t>(k)] + header.step * units[k];
+// Units to object space: `count` triples.
+inline void to_object(const Header& header, const float* units, float* __restrict positions, size_t count = 1) {
+    const std::array<float, 3> origin = header.origin;
+    const float step = header.step;
+    for (size_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
 }
 
 // The first chunk of a type; false where there is none.

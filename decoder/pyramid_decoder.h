@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <new>
 #include <span>
+#include <type_traits>
 
 #include "decoder/arena.h"
 #include "decoder/range_decoder.h"
@@ -134,21 +136,36 @@ Status decode_stream(PyramidDecoder<Wavelet>& decoder, const PyramidWorkspace& w
     return decoder.advance(band_coder, to_level) && coder.intact() ? Status::kOk : Status::kMalformed;
 }
 
-// Integers or floats in place to bounded floats. By memcpy: the two types share the memory.
+// Hardly ever is a value out of bounds, so that it pays to look first. What is not a number becomes the least.
+inline void bound_units(float* values, size_t count) {
+    constexpr auto kLargest = std::bit_cast<int32_t>(kLargestUnit);
+    int32_t beyond = 0;  // negative: some magnitude, read as an integer, is larger
+    for (size_t i = 0; i < count; ++i) beyond |= kLargest - (std::bit_cast<int32_t>(values[i]) & INT32_MAX);
+    if (beyond >= 0) return;
+    for (size_t i = 0; i < count; ++i) {
+        const float bounded = values[i] > -kLargestUnit ? values[i] : -kLargestUnit;
+        values[i] = bounded < kLargestUnit ? bounded : kLargestUnit;
+    }
+}
+
+// Integers or floats in place to bounded floats.
 template <class Sample>
 float* to_units(void* memory, size_t count) {
-    auto* bytes = static_cast<std::byte*>(memory);
-    constexpr size_t kBlock = 256;
-    Sample from[kBlock];
-    float to[kBlock];
-    for (size_t i = 0; i < count; i += kBlock) {
-        const size_t n = std::min(kBlock, count - i);
-        std::memcpy(from, bytes + i * 4, n * 4);
-        for (size_t k = 0; k < n; ++k)
-            to[k] = std::min(std::max(static_cast<float>(from[k]), -kLargestUnit), kLargestUnit);
-        std::memcpy(bytes + i * 4, to, n * 4);
+    if constexpr (!std::is_same_v<Sample, float>) {
+        auto* bytes = static_cast<std::byte*>(memory);
+        constexpr size_t kBlock = 256;
+        Sample from[kBlock];
+        float to[kBlock];
+        for (size_t i = 0; i < count; i += kBlock) {  // by memcpy: the two types share the memory
+            const size_t n = std::min(kBlock, count - i);
+            std::memcpy(from, bytes + i * 4, n * 4);
+            for (size_t k = 0; k < n; ++k) to[k] = static_cast<float>(from[k]);
+            std::memcpy(bytes + i * 4, to, n * 4);
+        }
     }
-    return static_cast<float*>(memory);
+    auto* values = static_cast<float*>(memory);
+    bound_units(values, count);
+    return values;
 }
 
 }  // namespace gim

@@ -1,6 +1,7 @@
 #include "decoder/synthesis.h"
 
 #include <algorithm>
+#include <cstring>
 #include <type_traits>
 
 namespace gim {
@@ -12,14 +13,21 @@ constexpr int low_step(
     return Wavelet::kSteps - 1 - 2 * i;
 }
 
-// Rows of the three bands as Samples: integers as they are, or dequantized.
+bool any_of(const int32_t* values, size_t count) {
+    int32_t all = 0;
+    for (size_t i = 0; i < count; ++i) all |= values[i];
+    return all != 0;
+}
+
+// Rows of the three bands as Samples: integers as they are, or dequantized. load() returns false where all are zeros.
 class IntegerDetails {
   public:
     IntegerDetails(const int32_t*, uint32_t, uint32_t, const LevelBands& bands, const DetailSteps&, const SharedRim&)
         : bands_(bands) {}
-    void load(Orientation orientation, uint32_t row, int32_t* out) const {
+    bool load(Orientation orientation, uint32_t row, int32_t* out) {
         const Band& band = bands_.of(orientation);
         std::copy_n(band.row(row), size_t{band.columns} * 3, out);
+        return any_of(out, size_t{band.columns} * 3);
     }
 
   private:
@@ -31,53 +39,98 @@ class LossyDetails {
     LossyDetails(const float* low, uint32_t low_columns, uint32_t low_rows, const LevelBands& bands,
                  const DetailSteps& steps, const SharedRim& rim)
         : bands_(bands), steps_(steps), rim_(rim), frames_(low, low_columns, low_rows, steps.cell_area) {}
-    void load(Orientation orientation, uint32_t row, float* out) const {
+    bool load(Orientation orientation, uint32_t row, float* out) {
         const Band& band = bands_.of(orientation);
+        if (steps_.in_frames) return load_framed_row(orientation, row, band, out);
         const int32_t* values = band.row(row);
-        if (steps_.in_frames) {
-            for (uint32_t column = 0; column < band.columns; ++column)
-                load_framed(orientation, row, column, out + 3 * size_t{column});
-            if (rim_) load_copies(orientation, row, band, out);
-        } else {
-            const float step = steps_.of(orientation);
-            for (size_t i = 0; i < size_t{band.columns} * 3; ++i) out[i] = dequantize(values[i], step);
-        }
+        const size_t count = size_t{band.columns} * 3;
+        const float step = steps_.of(orientation);
+        for (size_t i = 0; i < count; ++i) out[i] = dequantize(values[i], step);
+        return any_of(values, count);
     }
 
   private:
-    // Most details are zero: those need no frame.
-    void load_framed(Orientation orientation, uint32_t row, uint32_t column, float* out) const {
-        const int32_t* values = bands_.of(orientation).row(row) + 3 * size_t{column};
-        if ((values[0] | values[1] | values[2]) == 0) {
-            std::fill_n(out, 3, 0.0f);
-            return;
+    static constexpr uint32_t kLanes = 64, kBlock = 16;
+
+    // Most details are zero: those need no frame, and most blocks of them are skipped at once. Copies are zeros, too.
+    bool load_framed_row(Orientation orientation, uint32_t row, const Band& band, float* out) {
+        std::fill_n(out, size_t{band.columns} * 3, 0.0f);
+        const int32_t* values = band.row(row);
+        bool any = false;
+        const auto write = [&] {
+            any = any || count_ > 0;
+            write_gathered(orientation, out);
+        };
+        for (uint32_t begin = 0; begin < band.columns; begin += kBlock) {
+            const uint32_t end = std::min(begin + kBlock, band.columns);
+            if (end - begin == kBlock && !any_of(values + 3 * size_t{begin}, 3 * kBlock)) continue;
+            for (uint32_t column = begin; column < end; ++column) {
+                const int32_t* v = values + 3 * size_t{column};
+                columns_[count_] = column;
+                count_ += (v[0] | v[1] | v[2]) != 0;
+            }
+            if (count_ <= kLanes - kBlock) continue;
+            gather(orientation, row, columns_, count_, 0);
+            write();
         }
-        const DetailFrame frame = frames_.at(orientation, row, column);
-        float step[3], local[3];
-        steps_in(frame, steps_, orientation, step);
-        for (int k = 0; k < 3; ++k) local[k] = dequantize(values[k], step[k]);
-        out_of_frame(frame, local, out);
+        gather(orientation, row, columns_, count_, 0);
+        for_each_copy(orientation, row, band, [&](uint32_t column) {
+            const DetailPlace from = rim_.source_of(orientation, row, column);
+            if (!any_of(bands_.of(from.orientation).row(from.row) + 3 * size_t{from.column}, 3)) return;
+            if (count_ == kLanes) write();
+            gather(from.orientation, from.row, &from.column, 1, count_);
+            columns_[count_++] = column;
+        });
+        write();
+        return any;
     }
 
-    // Of a row of that band.
-    void load_copies(Orientation orientation, uint32_t row, const Band& band, float* out) const {
-        const auto load = [&](uint32_t column) {
-            if (!rim_.is_copy(orientation, row, column)) return;
-            const DetailPlace from = rim_.source_of(orientation, row, column);
-            load_framed(from.orientation, from.row, from.column, out + 3 * size_t{column});
-        };
-        if (orientation == Orientation::kHorizontal && (row == 0 || row + 1 == band.rows)) {
-            for (uint32_t column = 0; column < band.columns; ++column) load(column);
-        } else if (orientation == Orientation::kVertical) {
-            load(0);
-            load(band.columns - 1);
+    // Values and tangents of the details in some columns of a row, for lane `first` and the next ones.
+    void gather(Orientation orientation, uint32_t row, const uint32_t* columns, uint32_t count, uint32_t first) {
+        frames_.find_tangents(orientation, row, columns, count, lanes_, first);
+        const int32_t* values = bands_.of(orientation).row(row);
+        for (uint32_t i = 0; i < count; ++i)
+            for (uint32_t k = 0; k < 3; ++k) values_[k][first + i] = values[3 * size_t{columns[i]} + k];
+    }
+
+    // What has been gathered into its columns of a row. Copies have the steps of their sources.
+    void write_gathered(Orientation orientation, float* out) {
+        if (count_ == 0) return;
+        // A few more, left from before, are cheaper than the rest of a loop.
+        const uint32_t rounded = (count_ + 3) / 4 * 4;
+        frames_.make_frames(lanes_, rounded);
+        const float tangential = tangential_step(steps_, orientation);
+        const auto& axis = lanes_.axis;
+        for (uint32_t i = 0; i < rounded; ++i) {
+            const float a = dequantize(values_[0][i], normal_step(steps_, orientation, lanes_.scale[i]));
+            const float b = dequantize(values_[1][i], tangential), c = dequantize(values_[2][i], tangential);
+            for (uint32_t k = 0; k < 3; ++k) details_[k][i] = dot(axis[0][k][i], a, axis[1][k][i], b, axis[2][k][i], c);
         }
+        for (uint32_t i = 0; i < count_; ++i)
+            for (uint32_t k = 0; k < 3; ++k) out[3 * size_t{columns_[i]} + k] = details_[k][i];
+        count_ = 0;
+    }
+
+    // f(column) for each copy in a row of that band.
+    template <class F>
+    void for_each_copy(Orientation orientation, uint32_t row, const Band& band, const F& f) {
+        if (!rim_ || orientation == Orientation::kDiagonal) return;
+        const bool all = orientation == Orientation::kHorizontal && (row == 0 || row + 1 == band.rows);
+        if (!all && orientation == Orientation::kHorizontal) return;
+        const uint32_t next = all ? 1 : std::max(band.columns - 1, 1u);
+        for (uint32_t column = 0; column < band.columns; column += next)
+            if (rim_.is_copy(orientation, row, column)) f(column);
     }
 
     const LevelBands& bands_;
     const DetailSteps& steps_;
     const SharedRim& rim_;
     FrameField frames_;
+    uint32_t count_ = 0;  // lanes in use
+    uint32_t columns_[kLanes];
+    DetailLanes<kLanes> lanes_;
+    int32_t values_[3][kLanes] = {};
+    float details_[3][kLanes];
 };
 
 template <class Wavelet>
@@ -94,35 +147,53 @@ void load_low(const float* low, size_t count, float* row) {
     for (size_t i = 0; i < count; ++i) row[i] = low[i] * Irreversible97::kLowGain;
 }
 
-// Undoes the horizontal steps on one row given as low and high triples, as many low ones as high ones or one more. Both have
-// room for a triple behind, high also before. Writes the row.
+// Low and high triples in turn.
+template <class Sample>
+void interleave(size_t lows, size_t highs, const Sample* low, const Sample* high, Sample* __restrict row) {
+    // Four numbers at a time: the next triple covers the fourth. Not at the end, where there may be no next one.
+    for (size_t i = 0; i + 1 < highs; ++i) {
+        std::memcpy(row + 6 * i, low + 3 * i, 4 * sizeof(Sample));
+        std::memcpy(row + 6 * i + 3, high + 3 * i, 4 * sizeof(Sample));
+    }
+    std::copy_n(low + 3 * (highs - 1), 3, row + 6 * (highs - 1));
+    std::copy_n(high + 3 * (highs - 1), 3, row + 6 * (highs - 1) + 3);
+    if (lows > highs) std::copy_n(low + 3 * highs, 3, row + 6 * highs);
+}
+
+// A row given as low and high triples, as many low ones as high ones or one more. Both have room for a triple behind, high
+// also before.
+template <class Sample>
+struct SplitRow {
+    size_t lows, highs;
+    Sample *low, *high;
+    bool any_high = true;  // false: the high ones are all zeros
+};
+
+// Undoes the horizontal steps and writes the row.
 template <class Wavelet, class Keeps>
-void synthesize_row(size_t lows, size_t highs, typename Wavelet::Sample* low, typename Wavelet::Sample* high,
-                    typename Wavelet::Sample* row, const Keeps& keeps) {
+void synthesize_row(const SplitRow<typename Wavelet::Sample>& from, typename Wavelet::Sample* row, const Keeps& keeps) {
+    const auto [lows, highs, low, high, any_high] = from;
     for (int i = 0; i < Wavelet::kSteps / 2; ++i) {
-        lift_lows<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i), lows, highs, low, high, keeps);
+        // Zeros change nothing in the first step, whose factor is positive: x - 0 is x, -0 too.
+        if (i > 0 || any_high)
+            lift_lows<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i), lows, highs, low, high, keeps);
         std::copy_n(low + 3 * (lows - 1), 3, low + 3 * lows);
         lift_row<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i) - 1, high, low, low + 3, 3 * highs);
     }
-    for (size_t i = 0; i < highs; ++i) {
-        for (size_t k = 0; k < 3; ++k) row[6 * i + k] = low[3 * i + k];
-        for (size_t k = 0; k < 3; ++k) row[6 * i + 3 + k] = high[3 * i + k];
-    }
-    if (lows > highs) std::copy_n(low + 3 * highs, 3, row + 6 * highs);
+    interleave(lows, highs, low, high, row);
 }
 
 // Wavelet and what is kept are the rim's.
 template <class Sample>
-void synthesize_row_of(const SharedRim& rim, uint32_t row, uint32_t rows, size_t lows, size_t highs, Sample* low,
-                       Sample* high, Sample* out) {
+void synthesize_row_of(const SharedRim& rim, uint32_t row, uint32_t rows, const SplitRow<Sample>& from, Sample* out) {
     if constexpr (std::is_same_v<Sample, Reversible53::Sample>) {
-        synthesize_row<Reversible53>(lows, highs, low, high, out, KeepsNone{});
+        synthesize_row<Reversible53>(from, out, KeepsNone{});
     } else if (!rim) {
-        synthesize_row<Irreversible97>(lows, highs, low, high, out, KeepsNone{});
+        synthesize_row<Irreversible97>(from, out, KeepsNone{});
     } else if (row == 0 || row + 1 == rows) {
-        synthesize_row<Irreversible97>(lows, highs, low, high, out, KeepsOfRow{rim, row, rows});
+        synthesize_row<Irreversible97>(from, out, KeepsOfRow{rim, row, rows});
     } else {
-        synthesize_row<Irreversible97>(lows, highs, low, high, out, KeepsEnds{});
+        synthesize_row<Irreversible97>(from, out, KeepsEnds{});
     }
 }
 
@@ -152,16 +223,38 @@ class VerticalSynthesis {
     // Pair k of steps, ready for low row i of its first step: pair k runs k rows behind pair 0.
     void step(int k, ptrdiff_t i) {
         if (i < 0) return;
-        if (i < lows_) lift_low(low_step<Wavelet>(k), i);
-        if (i > 0) lift_high(low_step<Wavelet>(k) - 1, i - 1);
+        const int s = low_step<Wavelet>(k);
+        if (i > 0 && i < highs_ && is_lifted(i)) {
+            lift_low_and_high(s, i);
+        } else {
+            if (i < lows_) lift_low(s, i);
+            if (i > 0) lift_high(s - 1, i - 1);
+        }
         if (k + 1 < Wavelet::kSteps / 2) step(k + 1, i - 1);
+    }
+    // Both at once, low row i and high row i-1, where all rows differ.
+    void lift_low_and_high(int s, ptrdiff_t i) {
+        Sample *target = low(i), *high_target = high(i - 1);
+        const Sample *before = low(i - 1), *behind = high(i);
+        const auto [begin, end] = lifted_part(rim_, static_cast<uint32_t>(2 * i), width_);
+        lift_row_pair<Wavelet, Direction::kSynthesis>(s, target + begin, high_target + begin, behind + begin,
+                                                      before + begin, end - begin);
+        const auto lift_kept = [&](size_t from, size_t count) {
+            lift_end<Wavelet, Direction::kSynthesis>(s, target + from, count);
+            lift_row<Wavelet, Direction::kSynthesis>(s - 1, high_target + from, before + from, target + from, count);
+        };
+        if (begin > 0) lift_kept(0, begin);
+        if (end < width_) lift_kept(end, width_ - end);
+    }
+    bool is_lifted(ptrdiff_t i) const {
+        return i >= static_cast<ptrdiff_t>(lifted_.begin) && i < static_cast<ptrdiff_t>(lifted_.end);
     }
     Sample* low(ptrdiff_t i) { return image_ + static_cast<size_t>(2 * std::min(i, lows_ - 1)) * width_; }
     Sample* high(ptrdiff_t i) {
         return image_ + static_cast<size_t>(2 * std::clamp<ptrdiff_t>(i, 0, highs_ - 1) + 1) * width_;
     }
     void lift_low(int s, ptrdiff_t i) {
-        if (i < static_cast<ptrdiff_t>(lifted_.begin) || i >= static_cast<ptrdiff_t>(lifted_.end))
+        if (!is_lifted(i))
             lift_end<Wavelet, Direction::kSynthesis>(s, low(i), width_);
         else
             lift_low_row<Wavelet, Direction::kSynthesis>(s, low(i), high(i - 1), high(i), width_, rim_,
@@ -185,20 +278,25 @@ void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample*
                 const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image,
                 const SharedRim& rim) {
     const size_t lows = low_count(columns), highs = high_count(columns), width = size_t{columns} * 3;
-    auto* low_row = work;
-    auto* high_row = work + 3 * (lows + 1) + 3;
+    using Sample = typename Wavelet::Sample;
+    Sample* low_row = work;
+    Sample* high_row = work + 3 * (lows + 1) + 3;
     VerticalSynthesis<Wavelet> vertical(image, columns, rows, rim);
-    const typename DetailsOf<Wavelet>::Type details(low, low_count(columns), low_count(rows), bands, steps, rim);
+    typename DetailsOf<Wavelet>::Type details(low, low_count(columns), low_count(rows), bands, steps, rim);
     for (uint32_t i = 0; i <= rows / 2; ++i) {
         if (2 * i < rows) {
             load_low(low + i * 3 * lows, 3 * lows, low_row);
-            details.load(Orientation::kHorizontal, i, high_row);
-            synthesize_row_of(rim, 2 * i, rows, lows, highs, low_row, high_row, image + 2 * i * width);
+            const bool any = details.load(Orientation::kHorizontal, i, high_row);
+            synthesize_row_of(rim, 2 * i, rows, {lows, highs, low_row, high_row, any}, image + 2 * i * width);
         }
         if (2 * i + 1 < rows) {
-            details.load(Orientation::kVertical, i, low_row);
-            details.load(Orientation::kDiagonal, i, high_row);
-            synthesize_row_of(rim, 2 * i + 1, rows, lows, highs, low_row, high_row, image + (2 * i + 1) * width);
+            const bool any_low = details.load(Orientation::kVertical, i, low_row);
+            const bool any_high = details.load(Orientation::kDiagonal, i, high_row);
+            Sample* row = image + (2 * i + 1) * width;
+            if (any_low || any_high)
+                synthesize_row_of(rim, 2 * i + 1, rows, {lows, highs, low_row, high_row, any_high}, row);
+            else
+                std::fill_n(row, width, Sample{0});  // what lifting makes of zeros
         }
         vertical.advance(static_cast<ptrdiff_t>(i));
     }

@@ -14,14 +14,19 @@ struct VertexNumbers {
     uint32_t class_count = 0;
 
     uint32_t vertex_count() const { return class_of ? class_count + (side - 2) * (side - 2) : side * side; }
-    // ids[0..side-1]: vertices of a row of samples.
-    void row(uint32_t r, uint32_t* ids) const;
+    uint32_t at(uint32_t row, uint32_t column) const;
+};
+
+// Work space of triangulate.
+struct TriangulateWork {
+    float* rows = nullptr;        // 6 * side
+    uint32_t* is_main = nullptr;  // side - 1
 };
 
 // 2*(side-1)^2 triangles, counter-clockwise from outside, cell by cell. class_of decides the splits along the rim
-// whatever the numbering. row_ids: work space for 2*side numbers.
+// whatever the numbering.
 void triangulate(const float* samples, uint32_t side, const uint32_t* class_of, const VertexNumbers& numbers,
-                 uint32_t* row_ids, uint32_t* triangles);
+                 const TriangulateWork& work, uint32_t* triangles);
 
 // Unit normals of all side*side samples: cross product of the central differences (one-sided on the rim), summed over
 // glued samples; zero where that is zero. sums: work space for 3*class_count numbers.

@@ -258,21 +258,20 @@ bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, ui
             std::fill_n(left, 3, 0u);
             continue;
         }
-        const auto code = [&](uint32_t k, uint32_t set, uint32_t e, bool not_zero, uint32_t* magnitude)
-                              GIM_ALWAYS_INLINE_LAMBDA {
-                                  *magnitude = magnitude_of(values[at + k]);
-                                  if (!code_magnitude(coder, models, set, e, not_zero, magnitude)) return false;
-                                  if (*magnitude == 0) return true;
-                                  magnitudes[k] = *magnitude;
-                                  const auto value = static_cast<int32_t>(*magnitude);
-                                  values[at + k] = code_sign(k, column) ? -value : value;
-                                  return true;
-                              };
+        uint32_t magnitude[3] = {0, 0, 0};
+        const auto code = [&](uint32_t k, uint32_t set, uint32_t e, bool not_zero) GIM_ALWAYS_INLINE_LAMBDA {
+            uint32_t& m = magnitude[k];
+            m = magnitude_of(values[at + k]);
+            if (!code_magnitude(coder, models, set, e, not_zero, &m)) return false;
+            if (m == 0) return true;
+            magnitudes[k] = m;
+            values[at + k] = code_sign(k, column) ? -static_cast<int32_t>(m) : static_cast<int32_t>(m);
+            return true;
+        };
         const uint32_t* expected = work_.expected + at;
         const uint32_t beside1 = left[1] + above1, beside2 = left[2] + above2;
-        uint32_t magnitude[3] = {0, 0, 0};
         const uint32_t e0 = expected[0] + first.left * left[0] + first.cross * (beside1 + beside2);
-        if (!code(0, 0, e0, false, &magnitude[0])) return false;
+        if (!code(0, 0, e0, false)) return false;
         const uint32_t by_first = later.first * magnitude[0];
         const uint32_t e1 = expected[1] + later.left * left[1] + later.cross * beside2 + by_first;
         const uint32_t e2 = expected[2] + later.left * left[2] + later.cross * beside1 + by_first;
@@ -281,11 +280,9 @@ bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, ui
             const uint32_t any = (values[at + 1] | values[at + 2]) != 0;
             if (!coder.code_bit(models.pair[magnitude_class(e1 + e2).index][magnitude[0] != 0], any)) continue;
         }
-        if (!code(1, 1, e1, false, &magnitude[1])) return false;
-        if (!code(2, magnitude[1] != 0 ? 2 : 1, e2 + later.second * magnitude[1], paired && magnitude[1] == 0,
-                  &magnitude[2])) {
-            return false;
-        }
+        if (!code(1, 1, e1, false)) return false;
+        const uint32_t set = magnitude[1] != 0 ? 2 : 1;
+        if (!code(2, set, e2 + later.second * magnitude[1], paired && magnitude[1] == 0)) return false;
         std::copy_n(magnitude, 3, left);
     }
     return true;

@@ -61,6 +61,16 @@ inline constexpr float kMostAreaRatio = 4096;        // scale: 1/8 .. 8
 inline constexpr uint32_t kLeastScaledSide = 9;      // of small images that tell something about area
 inline constexpr float kLargestFrameUnit = 0x1p40f;  // greater tangents make no frame
 
+// Up to N details, component by component, so that loops over them are vectorised.
+template <size_t N>
+struct DetailLanes {
+    // Tangents along the row and across.
+    float u[3][N] = {}, v[3][N] = {};
+    // Of the frame; axis[a][k]: component k of axis a.
+    float area[N] = {}, along[N] = {};
+    float axis[3][3][N] = {}, scale[N] = {};
+};
+
 // The small image that details are added to: rows * columns triples in units.
 class FrameField {
   public:
@@ -73,80 +83,111 @@ class FrameField {
     // Of the detail of that band at (row, column): between its sample of the small image and the next one in the
     // direction of high frequency.
     DetailFrame at(Orientation orientation, uint32_t row, uint32_t column) const {
-        const uint32_t below = std::min(row + 1, rows_ - 1), right = std::min(column + 1, columns_ - 1);
-        float u[3], v[3];
-        switch (orientation) {
-            case Orientation::kHorizontal:
-                difference(row, column, row, right, u);
-                across_rows(row, column, right, v);
-                break;
-            case Orientation::kVertical:
-                across_columns(row, below, column, u);
-                difference(row, column, below, column, v);
-                break;
-            case Orientation::kDiagonal: {
-                float other[3];
-                difference(row, column, row, right, u);
-                difference(below, column, below, right, other);
-                for (int k = 0; k < 3; ++k) u[k] = 0.5f * (u[k] + other[k]);
-                difference(row, column, below, column, v);
-                difference(row, right, below, right, other);
-                for (int k = 0; k < 3; ++k) v[k] = 0.5f * (v[k] + other[k]);
+        DetailLanes<1> one;
+        find_tangents(orientation, row, &column, 1, one);
+        make_frames(one, 1);
+        DetailFrame frame;
+        for (int a = 0; a < 3; ++a)
+            for (int k = 0; k < 3; ++k) frame.axis[a][k] = one.axis[a][k][0];
+        frame.scale = one.scale[0];
+        return frame;
+    }
+
+    // The two steps of that for many details: first the tangents of those in some columns of a row, for lane `first` and
+    // the next ones, then the frames of all.
+    template <size_t N>
+    void find_tangents(Orientation orientation, uint32_t row, const uint32_t* columns, size_t count,
+                       DetailLanes<N>& lanes, size_t first = 0) const {
+        const float *before = row_at(std::max(row, 1u) - 1), *here = row_at(row),
+                    *below = row_at(std::min(row + 1, rows_ - 1));
+        // Over two samples where they exist.
+        const float across_rows = row > 0 && row + 1 < rows_ ? 0.25f : 0.5f;
+        auto &u = lanes.u, &v = lanes.v;
+        for (size_t i = first; i < first + count; ++i) {
+            const uint32_t column = columns[i - first];
+            size_t left = std::max(column, 1u) - 1, at = column, right = std::min(column + 1, columns_ - 1);
+            left *= 3, at *= 3, right *= 3;
+            for (size_t k = 0; k < 3; ++k, ++left, ++at, ++right) {
+                if (orientation == Orientation::kHorizontal) {
+                    u[k][i] = here[right] - here[at];
+                    v[k][i] = across_rows * ((below[at] - before[at]) + (below[right] - before[right]));
+                } else if (orientation == Orientation::kVertical) {
+                    const float across_columns = right - left == 6 ? 0.25f : 0.5f;
+                    u[k][i] = across_columns * ((here[right] - here[left]) + (below[right] - below[left]));
+                    v[k][i] = below[at] - here[at];
+                } else {
+                    u[k][i] = 0.5f * ((here[right] - here[at]) + (below[right] - below[at]));
+                    v[k][i] = 0.5f * ((below[at] - here[at]) + (below[right] - here[right]));
+                }
             }
         }
-        return frame_of(u, v);
+    }
+
+    template <size_t N>
+    void make_frames(DetailLanes<N>& lanes, size_t count) const {
+        auto& [u, v, area, along, axis, scale] = lanes;
+        auto& [normal, tangent, across] = axis;
+        for (size_t i = 0; i < count; ++i) {
+            cross(u, v, normal, i);
+            area[i] = squared_length(normal, i);
+            along[i] = squared_length(u, i);
+        }
+        for (size_t i = 0; i < count; ++i) area[i] = std::sqrt(area[i]);
+        for (size_t i = 0; i < count; ++i) along[i] = std::sqrt(along[i]);
+        for (size_t i = 0; i < count; ++i) {
+            for (int k = 0; k < 3; ++k) {
+                normal[k][i] = normal[k][i] / area[i];
+                tangent[k][i] = u[k][i] / along[i];
+            }
+            cross(normal, tangent, across, i);
+        }
+        make_scales(lanes, count);
+        int all = 1;
+        for (size_t i = 0; i < count; ++i) all &= makes_frame(area[i], along[i]);
+        if (all) return;
+        for (size_t i = 0; i < count; ++i) {
+            if (!makes_frame(area[i], along[i])) use_plain_frame(lanes, i);
+        }
     }
 
   private:
-    const float* sample(uint32_t row, uint32_t column) const { return image_ + (size_t{row} * columns_ + column) * 3; }
-    void difference(uint32_t row0, uint32_t column0, uint32_t row1, uint32_t column1, float* out) const {
-        const float *a = sample(row0, column0), *b = sample(row1, column1);
-        for (int k = 0; k < 3; ++k) out[k] = b[k] - a[k];
+    const float* row_at(uint32_t row) const { return image_ + size_t{row} * columns_ * 3; }
+
+    // Of vector i of arrays by component.
+    template <size_t N>
+    static float squared_length(const float (&a)[3][N], size_t i) {
+        return a[0][i] * a[0][i] + a[1][i] * a[1][i] + a[2][i] * a[2][i];
     }
-    // Mean over two columns of the tangent along the column, from the rows before and behind where they exist.
-    void across_rows(uint32_t row, uint32_t column0, uint32_t column1, float* out) const {
-        const uint32_t before = row > 0 ? row - 1 : 0, behind = std::min(row + 1, rows_ - 1);
-        mean_tangent(before, column0, behind, column0, before, column1, behind, column1, behind - before == 2, out);
-    }
-    void across_columns(uint32_t row0, uint32_t row1, uint32_t column, float* out) const {
-        const uint32_t before = column > 0 ? column - 1 : 0, behind = std::min(column + 1, columns_ - 1);
-        mean_tangent(row0, before, row0, behind, row1, before, row1, behind, behind - before == 2, out);
-    }
-    void mean_tangent(uint32_t r0, uint32_t c0, uint32_t r1, uint32_t c1, uint32_t r2, uint32_t c2, uint32_t r3,
-                      uint32_t c3, bool over_two, float* out) const {
-        float first[3], second[3];
-        difference(r0, c0, r1, c1, first);
-        difference(r2, c2, r3, c3, second);
-        const float weight = over_two ? 0.25f : 0.5f;
-        for (int k = 0; k < 3; ++k) out[k] = weight * (first[k] + second[k]);
+    template <size_t N>
+    static void cross(const float (&a)[3][N], const float (&b)[3][N], float (&out)[3][N], size_t i) {
+        const float x = a[1][i] * b[2][i] - a[2][i] * b[1][i];
+        const float y = a[2][i] * b[0][i] - a[0][i] * b[2][i];
+        const float z = a[0][i] * b[1][i] - a[1][i] * b[0][i];
+        out[0][i] = x;
+        out[1][i] = y;
+        out[2][i] = z;
     }
 
-    static float length(const float* a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
-    static void cross(const float* a, const float* b, float* out) {
-        out[0] = a[1] * b[2] - a[2] * b[1];
-        out[1] = a[2] * b[0] - a[0] * b[2];
-        out[2] = a[0] * b[1] - a[1] * b[0];
+    template <size_t N>
+    void make_scales(DetailLanes<N>& lanes, size_t count) const {
+        auto& scale = lanes.scale;
+        std::fill_n(scale, count, 1.0f);
+        if (!(cell_area_ > 0)) return;
+        for (size_t i = 0; i < count; ++i) scale[i] = std::max(cell_area_ / lanes.area[i], 1 / kMostAreaRatio);
+        for (size_t i = 0; i < count; ++i) scale[i] = std::min(scale[i], kMostAreaRatio);
+        for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
+        for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
     }
 
-    DetailFrame frame_of(const float* u, const float* v) const {
-        float normal[3];
-        cross(u, v, normal);
-        const float area = length(normal), along = length(u);
-        // False for what is not a number, too.
-        if (!(area > 0x1p-40f && along > 0x1p-40f && area < kLargestFrameUnit && along < kLargestFrameUnit))
-            return {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, 1};
-        DetailFrame frame;
-        for (int k = 0; k < 3; ++k) {
-            frame.axis[0][k] = normal[k] / area;
-            frame.axis[1][k] = u[k] / along;
-        }
-        cross(frame.axis[0], frame.axis[1], frame.axis[2]);
-        frame.scale = 1;
-        if (cell_area_ > 0) {
-            const float ratio = std::min(std::max(cell_area_ / area, 1 / kMostAreaRatio), kMostAreaRatio);
-            frame.scale = std::sqrt(std::sqrt(ratio));
-        }
-        return frame;
+    // 0 for what is not a number, too. Without branches.
+    static int makes_frame(float area, float along) {
+        return (area > 0x1p-40f) & (along > 0x1p-40f) & (area < kLargestFrameUnit) & (along < kLargestFrameUnit);
+    }
+    template <size_t N>
+    static void use_plain_frame(DetailLanes<N>& lanes, size_t i) {
+        for (int a = 0; a < 3; ++a)
+            for (int k = 0; k < 3; ++k) lanes.axis[a][k][i] = k == (a + 2) % 3 ? 1.0f : 0.0f;
+        lanes.scale[i] = 1;
     }
 
     const float* image_;
@@ -155,19 +196,26 @@ class FrameField {
 };
 
 // Steps of the components of a detail.
+inline float normal_step(const DetailSteps& steps, Orientation orientation, float scale) {
+    return steps.of(orientation) * scale;
+}
+inline float tangential_step(const DetailSteps& steps, Orientation orientation) {
+    return steps.of(orientation) * steps.tangential;
+}
 inline void steps_in(const DetailFrame& frame, const DetailSteps& steps, Orientation orientation, float* step) {
-    step[0] = steps.of(orientation) * frame.scale;
-    step[1] = step[2] = steps.of(orientation) * steps.tangential;
+    step[0] = normal_step(steps, orientation, frame.scale);
+    step[1] = step[2] = tangential_step(steps, orientation);
 }
 
 // Components along the axes -> x, y, z, and back.
+inline float dot(float a0, float b0, float a1, float b1, float a2, float b2) { return (a0 * b0 + a1 * b1) + a2 * b2; }
 inline void out_of_frame(const DetailFrame& frame, const float* local, float* detail) {
     for (int k = 0; k < 3; ++k)
-        detail[k] = (frame.axis[0][k] * local[0] + frame.axis[1][k] * local[1]) + frame.axis[2][k] * local[2];
+        detail[k] = dot(frame.axis[0][k], local[0], frame.axis[1][k], local[1], frame.axis[2][k], local[2]);
 }
 inline void into_frame(const DetailFrame& frame, const float* detail, float* local) {
     for (int k = 0; k < 3; ++k)
-        local[k] = (frame.axis[k][0] * detail[0] + frame.axis[k][1] * detail[1]) + frame.axis[k][2] * detail[2];
+        local[k] = dot(frame.axis[k][0], detail[0], frame.axis[k][1], detail[1], frame.axis[k][2], detail[2]);
 }
 
 }  // namespace gim

@@ -1,6 +1,7 @@
 #include "format/fuse.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "format/ring.h"
@@ -12,27 +13,33 @@ float* sample_at(float* samples, uint32_t side, uint32_t depth, GridPoint p) {
     return samples + (size_t{p.row + depth} * side + p.column + depth) * 3;
 }
 
+// decay * the mean of `count` outer corrections.
+void decayed_mean(const float* const* corrections, uint32_t count, float decay, float* mean) {
+    for (int k = 0; k < 3; ++k) {
+        float sum = 0;
+        for (uint32_t n = 0; n < count; ++n) sum = sum + corrections[n][k];
+        mean[k] = decay * (sum / static_cast<float>(count));
+    }
+}
+
 // Ring `depth` gets decay * the mean of the outer corrections next to it: three of them, five at its corners.
-void diffuse(uint32_t side, uint32_t depth, float decay, float* samples, const float* outer, float* inner) {
+void diffuse(uint32_t side, uint32_t depth, float decay, float* samples, const float* outer, float* __restrict inner) {
     const uint32_t edge = side - 1 - 2 * depth;  // samples of this ring per side of the square
     const uint32_t outer_ring = 4 * (edge + 2);
     for (uint32_t s = 0; s < 4; ++s) {
-        for (uint32_t t = 0; t < edge; ++t) {
-            const uint32_t count = t == 0 ? 5 : 3;
-            uint32_t o = s * (edge + 2) + (t == 0 ? outer_ring - 2 : t);
-            float sum[3] = {0, 0, 0};
-            for (uint32_t n = 0; n < count; ++n, ++o) {
-                const float* c = outer + size_t{o >= outer_ring ? o - outer_ring : o} * 3;
-                for (int k = 0; k < 3; ++k) sum[k] = sum[k] + c[k];
-            }
-            const uint32_t i = s * edge + t;
-            float* x = sample_at(samples, side, depth, ring_point(edge + 1, i));
-            for (int k = 0; k < 3; ++k) {
-                const float correction = decay * (sum[k] / static_cast<float>(count));
-                inner[size_t{i} * 3 + k] = correction;
-                x[k] = x[k] + correction;
-            }
-        }
+        const uint32_t first = s * edge, outer_first = s * (edge + 2);
+        const float* five[5];
+        for (uint32_t n = 0; n < 5; ++n) five[n] = outer + size_t{(outer_first + outer_ring - 2 + n) % outer_ring} * 3;
+        decayed_mean(five, 5, decay, inner + size_t{first} * 3);
+        const float *a = outer + size_t{outer_first + 1} * 3, *b = a + 3, *c = b + 3;
+        float* corrections = inner + size_t{first + 1} * 3;
+        for (size_t i = 0; i < size_t{edge - 1} * 3; ++i)
+            corrections[i] = decay * ((((0.0f + a[i]) + b[i]) + c[i]) / 3.0f);
+
+        float* x = sample_at(samples, side, depth, ring_point(edge + 1, first));
+        const ptrdiff_t next = sample_at(samples, side, depth, ring_point(edge + 1, first + 1)) - x;
+        for (uint32_t t = 0; t < edge; ++t, x += next)
+            for (size_t k = 0; k < 3; ++k) x[k] = x[k] + inner[size_t{first + t} * 3 + k];
     }
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "format/band.h"
 
@@ -65,6 +66,24 @@ inline void lift_row(int step, typename Wavelet::Sample* __restrict target, cons
             if constexpr (Wavelet::kSteps > 2)
                 for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(3, target[i], a[i], b[i]);
     }
+}
+
+// An odd step and the even one after it: low[i] = lift(step, low[i], high[i], next_high[i]), then
+// high[i] = lift(step - 1, high[i], previous_low[i], low[i]). The four do not overlap.
+template <class Wavelet, Direction D>
+inline void lift_row_pair(int step, typename Wavelet::Sample* __restrict low, typename Wavelet::Sample* __restrict high,
+                          const typename Wavelet::Sample* __restrict next_high,
+                          const typename Wavelet::Sample* __restrict previous_low, size_t count) {
+    const auto lift = [&]<int kStep>(std::integral_constant<int, kStep>) {
+        for (size_t i = 0; i < count; ++i) {
+            low[i] = Wavelet::template lift<D>(kStep, low[i], high[i], next_high[i]);
+            high[i] = Wavelet::template lift<D>(kStep - 1, high[i], previous_low[i], low[i]);
+        }
+    };
+    if constexpr (Wavelet::kSteps > 2) {
+        if (step == 3) return lift(std::integral_constant<int, 3>{});
+    }
+    lift(std::integral_constant<int, 1>{});
 }
 
 // On square images whose rim is shared (format/rim.h) the 9/7 keeps the low samples at the ends of a run, but for their gain:

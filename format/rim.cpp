@@ -18,14 +18,16 @@ void rim_sources(const SeamTable& seams, uint32_t side, std::span<uint32_t> sour
     for (uint32_t k = 0; k < ring; ++k) source[k] = k;
     if (seams.path_count == 0 || side <= seams.node_side) return;
     const uint32_t scale = (side - 1) / (seams.node_side - 1);
+    const auto wrap = [ring](uint32_t k) { return k >= ring ? k - ring : k; };
+    const auto is_corner = [side](uint32_t k) { return (k & (side - 2)) == 0; };  // side - 1 is a power of two
     for (uint32_t i = 0; i < seams.path_count; ++i) {
         const uint32_t mate = seams.mate[i], length = seams.length(i) * scale;
-        source[seams.first[i] * scale % ring] = kRunEnd;
+        source[wrap(seams.first[i] * scale)] = kRunEnd;
         if (mate == SeamTable::kBoundary || mate < i) continue;
         for (uint32_t t = 1; t < length; ++t) {
-            const uint32_t a = (seams.first[i] * scale + t) % ring, b = (seams.first[mate] * scale + length - t) % ring;
-            if (a % (side - 1) == 0) source[b] = kRunEnd;
-            if (b % (side - 1) == 0) source[a] = kRunEnd;
+            const uint32_t a = wrap(seams.first[i] * scale + t), b = wrap(seams.first[mate] * scale + length - t);
+            if (is_corner(a)) source[b] = kRunEnd;
+            if (is_corner(b)) source[a] = kRunEnd;
             if (a % 2 == 0) continue;  // then both are
             place_in_stream(side, a) < place_in_stream(side, b) ? source[b] = a : source[a] = b;
         }

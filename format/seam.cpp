@@ -1,6 +1,7 @@
 #include "format/seam.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace gim {
 namespace {
@@ -8,17 +9,17 @@ namespace {
 // One ring sample at some level, as a value that is equal exactly for glued samples: a node's class, or the pair
 // (first of the two mates, offset along it).
 uint64_t glued_identity(const SeamTable& table, uint32_t scale, uint32_t k) {
-    const uint64_t position =
-        k >= table.first[0] * scale ? k : uint64_t{k} + table.first[table.path_count] * scale - table.first[0] * scale;
-    const uint32_t node_position = static_cast<uint32_t>(position / scale);
+    const uint32_t start = table.first[0] * scale;
+    const uint32_t position = k >= start ? k : k + table.first[table.path_count] * scale - start;
+    const uint32_t node_position = position >> std::countr_zero(scale);  // sides are 2^j + 1
     const auto begin = table.first.begin();
     const auto path =
         static_cast<uint32_t>(std::upper_bound(begin, begin + table.path_count, node_position) - begin) - 1;
-    const uint64_t offset = position - uint64_t{table.first[path]} * scale;
+    const uint32_t offset = position - table.first[path] * scale;
     if (offset == 0) return (uint64_t{1} << 48) | table.node_class[path];
     const uint32_t mate = table.mate[path];
     if (mate == SeamTable::kBoundary || path < mate) return uint64_t{path} << 24 | offset;
-    return uint64_t{mate} << 24 | (uint64_t{table.length(path)} * scale - offset);
+    return uint64_t{mate} << 24 | (table.length(path) * scale - offset);
 }
 
 uint32_t next_path(const SeamTable& table, uint32_t path) { return path + 1 == table.path_count ? 0 : path + 1; }

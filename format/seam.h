@@ -64,16 +64,19 @@ Split rim_split(uint32_t side, uint32_t row, uint32_t column, const ClassAt& cla
 // ---- implementation of the template ----
 
 // Would the diagonal from rim sample b to interior sample p double another edge? It may when another of p's eight
-// neighbours is the same surface point as b.
+// neighbours is the same surface point as b. Those on the rim are a run of the ring: three samples, or five around a corner
+// of the square, whose side is 5 or more.
 template <class ClassAt>
 bool diagonal_may_double(uint32_t side, GridPoint b, GridPoint p, const ClassAt& class_at) {
-    const auto of_b = class_at(ring_index(side, b.row, b.column));
-    for (uint32_t row = p.row - 1; row <= p.row + 1; ++row) {
-        for (uint32_t column = p.column - 1; column <= p.column + 1; ++column) {
-            const GridPoint q{row, column};
-            if (q == b || !on_rim(side, row, column)) continue;
-            if (class_at(ring_index(side, row, column)) == of_b) return true;
-        }
+    const uint32_t ring = ring_length(side), of_b = ring_index(side, b.row, b.column);
+    const auto outwards = [side](uint32_t x) { return x == 1 ? 0 : x == side - 2 ? side - 1 : x; };
+    const GridPoint middle{outwards(p.row), outwards(p.column)};
+    const uint32_t reach = middle.row != p.row && middle.column != p.column ? 2 : 1;
+    const uint32_t first = ring_index(side, middle.row, middle.column) + ring - reach;
+    const auto class_of_b = class_at(of_b);
+    for (uint32_t i = 0; i <= 2 * reach; ++i) {
+        const uint32_t k = first + i >= ring ? first + i - ring : first + i;
+        if (k != of_b && class_at(k) == class_of_b) return true;
     }
     return false;
 }

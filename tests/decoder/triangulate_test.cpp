@@ -123,6 +123,16 @@ std::string manifold_complaint(const std::vector<uint32_t>& triangles, uint32_t 
     return {};
 }
 
+std::vector<uint32_t> triangles_of(const std::vector<float>& samples, const std::vector<uint32_t>& class_of,
+                                   const VertexNumbers& numbers) {
+    const size_t side = numbers.side;
+    std::vector<float> rows(side * 6);
+    std::vector<uint32_t> is_main(side - 1), triangles((side - 1) * (side - 1) * 6);
+    triangulate(samples.data(), numbers.side, class_of.data(), numbers, {rows.data(), is_main.data()},
+                triangles.data());
+    return triangles;
+}
+
 std::string closed_mesh_complaint(Random& random, const SeamTable& table, uint32_t side) {
     std::vector<uint32_t> class_of(ring_length(side));
     ring_classes(table, side, class_of);
@@ -130,9 +140,7 @@ std::string closed_mesh_complaint(Random& random, const SeamTable& table, uint32
     if (count != ring_class_count(table, side)) return "wrong class count";
     const std::vector<float> samples = random_samples(random, side, class_of);
     const VertexNumbers numbers = {side, class_of.data(), count};
-    std::vector<uint32_t> ids(size_t{side} * 2), triangles(size_t{side - 1} * (side - 1) * 6);
-    triangulate(samples.data(), side, class_of.data(), numbers, ids.data(), triangles.data());
-    return manifold_complaint(triangles, numbers.vertex_count(), of_schema(table));
+    return manifold_complaint(triangles_of(samples, class_of, numbers), numbers.vertex_count(), of_schema(table));
 }
 
 TEST(Triangulate, EveryClosedLevelOfRandomSchemasIsAManifoldOfItsTopology) {
@@ -220,17 +228,17 @@ TEST(Triangulate, InnerCellsTakeTheShorterDiagonalAndTheMainOneWhenEqual) {
     std::vector<float> x;
     for (uint32_t r = 0; r < side; ++r)
         for (uint32_t c = 0; c < side; ++c) x.insert(x.end(), {static_cast<float>(c), static_cast<float>(r), 0.0f});
-    std::vector<uint32_t> ids(2 * side), triangles(size_t{side - 1} * (side - 1) * 6);
     const VertexNumbers numbers = {side, nullptr, 0};
+    std::vector<uint32_t> triangles;
     const auto triangle_of = [&](uint32_t row, uint32_t column) {
         const size_t at = (size_t{row} * (side - 1) + column) * 6;
         return std::array<uint32_t, 3>{triangles[at], triangles[at + 1], triangles[at + 2]};
     };
     const uint32_t a = 3 * side + 3;  // cell (3, 3)
-    triangulate(x.data(), side, class_of.data(), numbers, ids.data(), triangles.data());
+    triangles = triangles_of(x, class_of, numbers);
     EXPECT_EQ(triangle_of(3, 3), (std::array<uint32_t, 3>{a, a + 1, a + side + 1}));
     x[a * 3 + 2] = 0.5f;  // lengthens the main diagonal
-    triangulate(x.data(), side, class_of.data(), numbers, ids.data(), triangles.data());
+    triangles = triangles_of(x, class_of, numbers);
     EXPECT_EQ(triangle_of(3, 3), (std::array<uint32_t, 3>{a, a + 1, a + side}));
 }
 

@@ -277,5 +277,28 @@ TEST(DetailFrame, HostileImagesHaveFiniteFrames) {
     }
 }
 
+// A decoder makes many at once, some of which are hostile.
+TEST(DetailFrame, AreTheSameOneByOneAndTogether) {
+    std::vector<float> image = sheet(kSide);
+    for (size_t i = 0; i < 3 * 40; ++i) image[i + 300] = i < 60 ? 0.0f : std::nanf("");
+    const FrameField field(image.data(), kSide, kSide, 6);
+    for (const Orientation orientation : kOrientations) {
+        std::vector<uint32_t> columns;
+        for (uint32_t column = orientation == Orientation::kVertical ? 0 : 1; column < kSide; ++column)
+            columns.push_back(kSide - 1 - column);
+        for (uint32_t row = 0; row + 1 < kSide; ++row) {
+            DetailLanes<24> lanes;
+            field.find_tangents(orientation, row, columns.data(), columns.size(), lanes, 3);
+            field.make_frames(lanes, 20);
+            for (size_t i = 0; i < columns.size(); ++i) {
+                const DetailFrame frame = field.at(orientation, row, columns[i]);
+                for (size_t a = 0; a < 3; ++a)
+                    for (size_t k = 0; k < 3; ++k) ASSERT_EQ(lanes.axis[a][k][3 + i], frame.axis[a][k]);
+                ASSERT_EQ(lanes.scale[3 + i], frame.scale);
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gim
