@@ -37,7 +37,8 @@ struct BandModels {
     CoefficientKind kind;
     std::array<BitModel, 12> block;  // by the blocks left and above, and by what the parent band has there
     // The first component; a later one; the last one where the second is not 0.
-    std::array<std::array<std::array<BitModel, kUnary>, kClasses>, 3> magnitude;
+    // kUnary of 16, which are quicker to find.
+    std::array<std::array<std::array<BitModel, 16>, kClasses>, 3> magnitude;
     std::array<std::array<BitModel, 2>, kClasses> pair;  // in frames: is any tangential component not 0?
     std::array<BitModel, 32> escape;
     // First or later component; per orientation; by the signs of above, left and parent.
@@ -149,7 +150,7 @@ void BandModels::for_each(F&& f) {
     for (BitModel& m : block) f(m);
     for (auto& set : magnitude)
         for (auto& c : set)
-            for (BitModel& m : c) f(m);
+            for (uint32_t i = 0; i < kUnary; ++i) f(c[i]);
     for (auto& c : pair)
         for (BitModel& m : c) f(m);
     for (BitModel& m : escape) f(m);
