@@ -268,7 +268,7 @@ class VerticalSynthesis {
     const SharedRim& rim_;
     size_t width_;
     ptrdiff_t lows_, highs_;
-    LiftedLows lifted_;
+    LiftedRange lifted_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "encoder/coding_trial.h"
+#include "encoder/rate_control.h"
 
 namespace gim {
 
@@ -22,27 +23,32 @@ struct Candidate {
     double log_bytes = std::numeric_limits<double>::infinity();
 };
 
-template <class Body>
-void for_each_at_once(std::vector<Candidate>& candidates, const Body& body) {
-    tbb::parallel_for(size_t{0}, candidates.size(), [&](size_t i) { body(candidates[i]); });
+template <class T, class Body>
+void for_each_at_once(std::vector<T>& all, const Body& body) {
+    tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { body(all[i]); });
 }
 
 // Different cuts only.
 std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
     const CuttableSurface surface = make_cuttable(mesh, options.side);
-    std::vector<std::optional<CutSurface>> cuts(std::size(kPreferences));
-    tbb::parallel_for(size_t{0}, cuts.size(), [&](size_t i) {
-        auto cut = cut_open(surface, options, kPreferences[i]);
-        if (cut.ok()) cuts[i] = std::move(cut.value());
+    struct Attempt {
+        CutPreference preference;
+        std::optional<CutSurface> cut;
+    };
+    std::vector<Attempt> attempts;
+    for (const CutPreference& preference : kPreferences) attempts.push_back({preference, {}});
+    for_each_at_once(attempts, [&](Attempt& attempt) {
+        auto cut = cut_open(surface, options, attempt.preference);
+        if (cut.ok()) attempt.cut = std::move(cut.value());
     });
     std::vector<Candidate> candidates;
-    for (size_t i = 0; i < cuts.size(); ++i) {
-        if (!cuts[i]) continue;
+    for (Attempt& attempt : attempts) {
+        if (!attempt.cut) continue;
         const bool is_known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-            return other.cut.cut_length == cuts[i]->cut_length &&
-                   other.cut.boundary.sideband == cuts[i]->boundary.sideband;
+            return other.cut.cut_length == attempt.cut->cut_length &&
+                   other.cut.boundary.sideband == attempt.cut->boundary.sideband;
         });
-        if (!is_known) candidates.push_back({kPreferences[i], std::move(*cuts[i]), {}});
+        if (!is_known) candidates.push_back({attempt.preference, std::move(*attempt.cut), {}});
     }
     return candidates;
 }
@@ -50,9 +56,7 @@ std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions
 }  // namespace
 
 bool may_choose_chart(const EncodeOptions& options) {
-    const bool has_target =
-        options.rate.kind == RateTarget::Kind::kPsnr || options.rate.kind == RateTarget::Kind::kBytes;
-    return has_target && options.fit == FitStrength::kAuto;
+    return is_searched(options.rate) && options.fit == FitStrength::kAuto;
 }
 
 std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {

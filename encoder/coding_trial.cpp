@@ -1,6 +1,5 @@
 #include "encoder/coding_trial.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "encoder/decode_surface.h"
@@ -47,10 +46,8 @@ double CodingTrial::quantizer_for(const GeometryImage& image) const {
     for (int k = 0; k < kMostGuesses; ++k) {
         const auto now = coded(image, quantizer);
         if (!now.ok()) break;
-        const double octaves = options_.rate.kind == RateTarget::Kind::kBytes
-                                   ? std::log(now.value().bytes / options_.rate.value) / std::log(kBytesPerOctave)
-                                   : (now.value().psnr - options_.rate.value) / kDecibelPerOctave;
-        quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
+        const double octaves = octaves_to(options_.rate, now.value().bytes, now.value().psnr);
+        quantizer = coarser_quantizer(quantizer, octaves, 4);
         if (std::abs(octaves) < kNearEnough) break;
     }
     return quantizer;

@@ -11,6 +11,7 @@
 #include "encoder/encode_squares.h"
 #include "encoder/finish_encoding.h"
 #include "encoder/input_colors.h"
+#include "encoder/rate_control.h"
 #include "encoder/result.h"
 #include "encoder/square_images.h"
 #include "encoder/stage_clock.h"
@@ -42,17 +43,8 @@ EncodeOptions halved(EncodeOptions options) {
 }
 
 bool may_halve(const EncodeOptions& options) {
-    switch (options.rate.kind) {
-        case RateTarget::Kind::kPsnr:
-            return options.try_smaller_sides && options.side >= kLeastSideToHalve &&
-                   options.rate.value <= kMostPsnrOfSmallerSides;
-        case RateTarget::Kind::kBytes:
-            return options.try_smaller_sides && options.side >= kLeastSideToHalve;
-        case RateTarget::Kind::kLossless:
-        case RateTarget::Kind::kQuality:
-            break;
-    }
-    return false;
+    const bool is_fine = options.rate.kind == RateTarget::Kind::kPsnr && options.rate.value > kMostPsnrOfSmallerSides;
+    return options.try_smaller_sides && options.side >= kLeastSideToHalve && is_searched(options.rate) && !is_fine;
 }
 
 // The file of the side that is asked for or, where that is allowed and the target coarse, of the half of it as long as halving

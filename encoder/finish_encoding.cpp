@@ -67,10 +67,14 @@ class RateSearch {
 
     // How much coarser the quantizer might be, in octaves, for the target and a part of the slack to be met.
     Result<double> room(const Bytes& bytes) const {
-        if (target_.kind == RateTarget::Kind::kBytes)
-            return std::log(double(bytes.size()) / ((1 - kBytesSlack / 2) * target_.value)) / std::log(kBytesPerOctave);
+        RateTarget wanted = target_;
+        if (target_.kind == RateTarget::Kind::kBytes) {
+            wanted.value *= 1 - kBytesSlack / 2;
+            return octaves_to(wanted, double(bytes.size()), 0);
+        }
+        wanted.value += kPsnrSlack / 2;
         GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
-        return (comparison.psnr - target_.value - kPsnrSlack / 2) / kDecibelPerOctave;
+        return octaves_to(wanted, 0, comparison.psnr);
     }
 
     // By quick fits.
@@ -78,7 +82,7 @@ class RateSearch {
         for (int k = 0; k < kMostApproaches; ++k) {
             GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
             GIM_TRY(octaves, room(bytes));
-            quantizer = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -4.0, 4.0)));
+            quantizer = coarser_quantizer(quantizer, octaves, 4);
             if (std::abs(octaves) < kNear) break;
         }
         return quantizer;
@@ -97,7 +101,7 @@ class RateSearch {
             GIM_TRY(is_met, meets_target(bytes));
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
             if (is_met && std::abs(octaves) <= slack_in_octaves() / 2) return best;
-            const double next = clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -2.0, 2.0)));
+            const double next = coarser_quantizer(quantizer, octaves, 2);
             if (next == quantizer) break;
             quantizer = next;
         }

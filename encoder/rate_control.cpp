@@ -95,9 +95,23 @@ Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget
     return best;
 }
 
+// Into the range that searches cover.
+double clamped_quantizer(double quantizer) { return std::clamp(quantizer, std::exp2(kFinest), std::exp2(kCoarsest)); }
+
 }  // namespace
 
-double clamped_quantizer(double quantizer) { return std::clamp(quantizer, std::exp2(kFinest), std::exp2(kCoarsest)); }
+bool is_searched(const RateTarget& target) {
+    return target.kind == RateTarget::Kind::kPsnr || target.kind == RateTarget::Kind::kBytes;
+}
+
+double octaves_to(const RateTarget& target, double bytes, double psnr) {
+    return target.kind == RateTarget::Kind::kBytes ? std::log(bytes / target.value) / std::log(kBytesPerOctave)
+                                                   : (psnr - target.value) / kDecibelPerOctave;
+}
+
+double coarser_quantizer(double quantizer, double octaves, double most) {
+    return clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -most, most)));
+}
 
 // PSNR and size targets begin where scanned surfaces end up: 68 dB at 16 steps of a 12-bit quantizer, 4.3 dB an octave.
 double first_quantizer(const RateTarget& target, uint32_t bits) {

@@ -17,6 +17,15 @@ using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 // What an octave of the quantizer changes in files that are fitted to it (encoder/fit_coded.h), about.
 inline constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
 
+// Is the quantizer searched for? Else the target says what it is.
+bool is_searched(const RateTarget& target);
+
+// How much coarser, in octaves, the quantizer of a file of that size and error might be for a target of bytes or PSNR.
+double octaves_to(const RateTarget& target, double bytes, double psnr);
+
+// A quantizer so many octaves coarser, at most `most` either way, in the range that searches cover.
+double coarser_quantizer(double quantizer, double octaves, double most);
+
 // A complete file that meets the target:
 //   lossless  the quantized images are kept exactly
 //   quality   no search: 75 is a step of 8 quantization steps of a 12-bit quantizer, 10 more halve it
@@ -25,9 +34,6 @@ inline constexpr double kDecibelPerOctave = 4.3, kBytesPerOctave = 1.65;
 // first: where searches begin, and what the others take. Cost: up to about 16 files written, each judged for psnr.
 Result<std::vector<uint8_t>> code_to_target(const FileWriter& writer, double first, const RateTarget& target,
                                             const JudgeFile& judge);
-
-// Into the range that searches cover.
-double clamped_quantizer(double quantizer);
 
 // That of a quality, or of quality 75 for searches.
 double first_quantizer(const RateTarget& target, uint32_t bits);

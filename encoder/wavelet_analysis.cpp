@@ -154,7 +154,7 @@ void take_off(float factor, float* __restrict target, const float* __restrict so
 template <class Low, class High, class Span>
 void transpose_steps(size_t lows, size_t highs, const Low& low, const High& high, size_t width, bool keeps_ends,
                      const Span& span) {
-    const LiftedLows lifted = lifted_lows(lows, keeps_ends);
+    const LiftedRange lifted = lifted_lows(lows, keeps_ends);
     for (size_t step = 0; step < 4; step += 2) {
         for (size_t i = 0; i < highs; ++i) {
             take_off(Irreversible97::kFactor[step], low(i), high(i), width);
@@ -162,7 +162,7 @@ void transpose_steps(size_t lows, size_t highs, const Low& low, const High& high
         }
         for (size_t i = 0; i < lows; ++i) {
             const bool is_end = i < lifted.begin || i >= lifted.end;
-            const auto [begin, end] = is_end ? LiftedPart{0, 0} : span(i);
+            const auto [begin, end] = is_end ? LiftedRange{0, 0} : span(i);
             lift_end<Irreversible97, Direction::kSynthesis>(static_cast<int>(step) + 1, low(i), begin);
             lift_end<Irreversible97, Direction::kSynthesis>(static_cast<int>(step) + 1, low(i) + end, width - end);
             if (begin == end) continue;
@@ -199,7 +199,7 @@ Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const
                 lows, highs, [&](size_t i) { return row + 6 * i; }, [&](size_t i) { return row + 6 * i + 3; }, 3,
                 keeps.ends(),
                 [&](size_t i) {
-                    return keeps(i) ? LiftedPart{0, 0} : LiftedPart{0, 3};
+                    return keeps(i) ? LiftedRange{0, 0} : LiftedRange{0, 3};
                 });
             float* to_low = (r % 2 == 0 ? low_image : level.vertical).data() + (r / 2) * lows * 3;
             float* to_high = (r % 2 == 0 ? level.horizontal : level.diagonal).data() + (r / 2) * highs * 3;

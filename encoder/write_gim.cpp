@@ -120,6 +120,7 @@ void GimWriter::drop_levels_of_no_use() {
         return false;
     };
     while (header_.level_count > 1 && !is_closed(header_.level_count - 1)) --header_.level_count;
+    header_.side_exponents = {};  // header() sets them: a copy must not look into this writer
 }
 
 Header GimWriter::header(double quantizer) const {

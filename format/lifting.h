@@ -88,11 +88,11 @@ inline void lift_row_pair(int step, typename Wavelet::Sample* __restrict low, ty
 
 // On square images whose rim is shared (format/rim.h) the 9/7 keeps the low samples at the ends of a run, but for their gain:
 // linear runs have no details up to their ends, and the rim is transformed by itself. Elsewhere every low sample is lifted.
-struct LiftedLows {
+struct LiftedRange {
     size_t begin, end;
 };
-inline LiftedLows lifted_lows(size_t lows, bool keeps_ends) {
-    return keeps_ends ? LiftedLows{1, lows - 1} : LiftedLows{0, lows};
+inline LiftedRange lifted_lows(size_t lows, bool keeps_ends) {
+    return keeps_ends ? LiftedRange{1, lows - 1} : LiftedRange{0, lows};
 }
 
 // What an odd step does to a low sample that is kept: the first one brings it to the gain of the others.
@@ -109,7 +109,6 @@ inline void lift_end(int step, typename Wavelet::Sample* low, size_t width) {
 struct KeepsNone {
     static constexpr bool kInner = false;
     bool ends() const { return false; }
-    bool operator()(size_t) const { return false; }
 };
 struct KeepsEnds : KeepsNone {
     bool ends() const { return true; }

@@ -91,10 +91,7 @@ struct KeepsOfRow {
 };
 
 // Values [begin, end) of a row between two rows, as columns are lifted, that are not kept. Neither the first nor the last row.
-struct LiftedPart {
-    size_t begin, end;
-};
-inline LiftedPart lifted_part(const SharedRim& rim, uint32_t row, size_t width) {
+inline LiftedRange lifted_part(const SharedRim& rim, uint32_t row, size_t width) {
     return {rim.is_run_end(row, 0) ? 3u : 0u,
             rim.is_run_end(row, static_cast<uint32_t>(width / 3 - 1)) ? width - 3 : width};
 }
