@@ -201,10 +201,11 @@ void BandCoder<Coder>::code_block_flags(const Band& band, const Surroundings& ar
     const uint32_t blocks = (band.columns + 7) / 8;
     uint32_t left = 1;
     for (uint32_t b = 0; b < blocks; ++b) {
-        uint32_t parents = 0;  // triples that are not zero, up to two
+        uint32_t parents = 0;  // triples that are not zero; three are as good as more
         if (around.parent) {
             const uint32_t end = std::min(around.parent->columns, b * 4 + 4);
-            for (uint32_t r = row / 2; r < std::min(around.parent->rows, row / 2 + 4); ++r) {
+            const uint32_t rows_end = std::min(around.parent->rows, row / 2 + 4);
+            for (uint32_t r = row / 2; r < rows_end && parents <= 2; ++r) {
                 const int32_t* from = around.parent->row(r);
                 for (uint32_t c = b * 4; c < end; ++c)
                     parents += (from[c * 3] | from[c * 3 + 1] | from[c * 3 + 2]) != 0;
