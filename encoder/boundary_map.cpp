@@ -15,7 +15,7 @@ namespace {
 
 // Shortest cut-path on the node grid. Of two paths between the same cut-nodes one needs a second edge, and a path that returns
 // to its own cut-node a third, or two edges would be the same.
-constexpr uint32_t kLeastUnits = 1, kLeastParallelUnits = 2, kLeastLoopUnits = 3;
+constexpr uint32_t kLeastParallelUnits = 2, kLeastLoopUnits = 3;
 
 // A cut-path with its mate, or an input boundary on its own.
 struct PathPair {
@@ -38,14 +38,15 @@ double path_length(const OpenedMesh& opened, size_t k) {
     return length;
 }
 
-std::vector<PathPair> pair_paths(const OpenedMesh& opened) {
+std::vector<PathPair> pair_paths(const OpenedMesh& opened, uint32_t least_units) {
     std::vector<PathPair> pairs;
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> between;  // how many pairs of paths join these two cut-nodes
     for (uint32_t k = 0; k < opened.paths.size(); ++k) {
         const BoundaryPath& path = opened.paths[k];
         if (path.mate >= 0 && static_cast<uint32_t>(path.mate) < k) continue;
         const bool loop = path.begin_node == path.end_node;
-        pairs.push_back({k, path.mate >= 0 ? 2u : 1u, path_length(opened, k), loop ? kLeastLoopUnits : kLeastUnits});
+        pairs.push_back({k, path.mate >= 0 ? 2u : 1u, path_length(opened, k),
+                         loop ? std::max(kLeastLoopUnits, least_units) : least_units});
         ++between[std::minmax(path.begin_node, path.end_node)];
     }
     for (PathPair& p : pairs) {
@@ -140,7 +141,7 @@ bool choose_start(Sideband& sideband) {
 }
 
 Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& options) {
-    std::vector<PathPair> pairs = pair_paths(opened);
+    std::vector<PathPair> pairs = pair_paths(opened, std::max(options.least_units, 1u));
     for (uint32_t node_side = options.node_side; node_side <= options.side; node_side = 2 * node_side - 1) {
         const uint32_t total = 4 * (node_side - 1);
         if (!allot(pairs, total)) continue;

@@ -21,6 +21,8 @@ struct BoundaryMapOptions {
     uint32_t node_side = 17;  // coarsest grid on which cut-nodes should lie, 2^i + 1 <= side; raised when too coarse
     double most_excess =
         0.1;  // part of the ring that cut-paths may have beyond their shares: what makes a grid too coarse
+    uint32_t least_units =
+        1;  // of each cut-path, at least 1; those of a loop and of parallel paths have more in any case
 };
 
 // The opened mesh with its boundary laid out. Edges that span a corner of the square have been split there (with their

@@ -14,7 +14,7 @@ namespace gim {
 
 namespace {
 
-constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}};
+constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}, {0.6, 0, 2}};
 
 struct Candidate {
     CutPreference preference;

@@ -18,7 +18,7 @@ struct ChosenChart {
     CutPreference preference;
 };
 // In: a clean connected mesh, options of which may_choose_chart() is true. Nothing where no cut leads to an image of that side.
-// The same for any number of threads. Cost: about that of five images, and of five short fits.
+// The same for any number of threads. Cost: about that of six images, and of six short fits.
 std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
 
 }  // namespace gim

@@ -58,7 +58,7 @@ CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side) {
 Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options,
                             const CutPreference& preference, const Progress& progress, const Observer& observer) {
     AugmentOptions search;
-    search.boundary = {options.side, options.node_side, preference.most_excess};
+    search.boundary = {options.side, options.node_side, preference.most_excess, preference.least_units};
     search.path_cost = preference.path_cost;
     GIM_TRY(found, find_cut(surface.mesh, surface.topology, surface.coarse, search, progress));
     GIM_TRY(opened, open_mesh(surface.mesh, surface.topology, found.cut));

@@ -16,6 +16,7 @@ struct CutPreference {
     double most_excess =
         0.1;  // BoundaryMapOptions: cut-nodes on a coarse grid, or each cut-path at its share of the boundary
     double path_cost = 0.003;  // AugmentOptions: few cut-paths, or little stretch
+    uint32_t least_units = 1;  // BoundaryMapOptions: short cut-paths at their shares, or with room
 
     friend bool operator==(const CutPreference&, const CutPreference&) = default;
 };

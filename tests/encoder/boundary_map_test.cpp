@@ -108,6 +108,19 @@ TEST(BoundaryMap, TheNodeGridIsClosedAndFineEnoughForEveryPathToHaveAboutItsShar
     }
 }
 
+TEST(BoundaryMap, EveryPathHasTheLeastThatIsAskedFor) {
+    for (const uint32_t least : {1u, 2u, 3u}) {
+        bool is_tight = false;
+        for (const Laid& l : laid_out({257, 5, 1, least})) {
+            for (const CutPath& path : l.boundary.sideband.paths) {
+                EXPECT_GE(path.length, least) << l.input.name;
+                is_tight = is_tight || path.length == least;
+            }
+        }
+        EXPECT_TRUE(is_tight) << least;
+    }
+}
+
 TEST(BoundaryMap, NoLeafOfTheCutLiesOnACorner) {
     for (const Laid& l : laid_out({})) {
         const Sideband& sideband = l.boundary.sideband;
