@@ -90,6 +90,7 @@ void weigh_with_parent(const BandSurroundings& around, ptrdiff_t begin, ptrdiff_
 }  // namespace
 
 BandWork::BandWork(uint32_t* memory, uint32_t columns) {
+    if (!memory) return;
     for (uint32_t** row : {&magnitudes, &expected, &parents, &horizontal, &vertical}) {
         *row = memory + 3;
         memory += row_size(columns);

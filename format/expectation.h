@@ -29,7 +29,7 @@ struct BandSurroundings {
 class BandWork {
   public:
     BandWork() = default;
-    // memory: size(columns) numbers; columns: of the widest image.
+    // memory: size(columns) numbers, or null while memory is counted; columns: of the widest image.
     BandWork(uint32_t* memory, uint32_t columns);
     static size_t size(uint32_t columns);
 
