@@ -18,7 +18,7 @@ constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.0
 
 struct Candidate {
     CutPreference preference;
-    CutSurface cut;
+    std::optional<CutSurface> cut;
     std::optional<SingleChart> chart;
     double log_bytes = std::numeric_limits<double>::infinity();
 };
@@ -31,24 +31,20 @@ void for_each_at_once(std::vector<T>& all, const Body& body) {
 // Different cuts only.
 std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
     const CuttableSurface surface = make_cuttable(mesh, options.side);
-    struct Attempt {
-        CutPreference preference;
-        std::optional<CutSurface> cut;
-    };
-    std::vector<Attempt> attempts;
-    for (const CutPreference& preference : kPreferences) attempts.push_back({preference, {}});
-    for_each_at_once(attempts, [&](Attempt& attempt) {
+    std::vector<Candidate> attempts;
+    for (const CutPreference& preference : kPreferences) attempts.push_back({preference, {}, {}});
+    for_each_at_once(attempts, [&](Candidate& attempt) {
         auto cut = cut_open(surface, options, attempt.preference);
         if (cut.ok()) attempt.cut = std::move(cut.value());
     });
     std::vector<Candidate> candidates;
-    for (Attempt& attempt : attempts) {
+    for (Candidate& attempt : attempts) {
         if (!attempt.cut) continue;
         const bool is_known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-            return other.cut.cut_length == attempt.cut->cut_length &&
-                   other.cut.boundary.sideband == attempt.cut->boundary.sideband;
+            return other.cut->cut_length == attempt.cut->cut_length &&
+                   other.cut->boundary.sideband == attempt.cut->boundary.sideband;
         });
-        if (!is_known) candidates.push_back({attempt.preference, std::move(*attempt.cut), {}});
+        if (!is_known) candidates.push_back(std::move(attempt));
     }
     return candidates;
 }
@@ -66,7 +62,7 @@ std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& o
     clock.begin(Stage::kParametrize);
     for_each_at_once(candidates, [&](Candidate& candidate) {
         StageClock unheard({});
-        auto chart = map_and_sample(candidate.cut, mesh, options, unheard);
+        auto chart = map_and_sample(*candidate.cut, mesh, options, unheard);
         if (chart.ok()) candidate.chart = std::move(chart.value());
     });
     std::erase_if(candidates, [](const Candidate& candidate) { return !candidate.chart; });

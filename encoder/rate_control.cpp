@@ -117,7 +117,7 @@ double coarser_quantizer(double quantizer, double octaves, double most) {
 double first_quantizer(const RateTarget& target, uint32_t bits) {
     const double of_12_bits = std::exp2(int(bits) - 12);
     if (target.kind == RateTarget::Kind::kPsnr)
-        return clamped_quantizer(16 * of_12_bits * std::exp2((68 - target.value) / 4.3));
+        return clamped_quantizer(16 * of_12_bits * std::exp2((68 - target.value) / kDecibelPerOctave));
     return clamped_quantizer(quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, bits));
 }
 

@@ -79,7 +79,6 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
                               ? static_cast<uint32_t>(std::countr_zero(parameters.base_side - 1))
                               : 4;
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
-    header.side_exponents = writer.side_exponents_;
     header.level_count = largest > base ? largest - base + 1 : 1;
     writer.drop_levels_of_no_use();
     writer.planes_ = parameters.planes;
@@ -111,16 +110,18 @@ Result<GimWriter> GimWriter::create(std::span<const GeometryImage> images, const
 
 // No image could close them.
 void GimWriter::drop_levels_of_no_use() {
+    Header header = header_;
+    header.side_exponents = side_exponents_;
     const auto is_closed = [&](uint32_t level) {
         for (uint32_t i = 0; i < side_exponents_.size(); ++i) {
-            if (level < header_.level_count_of(i) &&
+            if (level < header.level_count_of(i) &&
                 level_is_closed(seam_tables_[i], (1u << (side_exponents_[i] - level)) + 1))
                 return true;
         }
         return false;
     };
-    while (header_.level_count > 1 && !is_closed(header_.level_count - 1)) --header_.level_count;
-    header_.side_exponents = {};  // header() sets them: a copy must not look into this writer
+    while (header.level_count > 1 && !is_closed(header.level_count - 1)) --header.level_count;
+    header_.level_count = header.level_count;
 }
 
 Header GimWriter::header(double quantizer) const {

@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include "format/band.h"
 #include "format/bit_model.h"
@@ -75,30 +76,6 @@ GIM_ALWAYS_INLINE MagnitudeClass magnitude_class(uint32_t expected) {
     return compute_magnitude_class(expected);
 }
 
-// A coder while many decisions are made. A decoder is copied, so that its state can stay in registers, and copied back.
-template <class Coder>
-class HeldCoder {
-  public:
-    explicit HeldCoder(Coder* coder) : coder_(*coder) {}
-    Coder& get() { return coder_; }
-
-  private:
-    Coder& coder_;
-};
-template <class Coder>
-requires(!Coder::kWrites) class HeldCoder<Coder> {
-  public:
-    explicit HeldCoder(Coder* coder) : original_(*coder), copy_(*coder) {}
-    ~HeldCoder() { original_ = copy_; }
-    HeldCoder(const HeldCoder&) = delete;
-    HeldCoder& operator=(const HeldCoder&) = delete;
-    Coder& get() { return copy_; }
-
-  private:
-    Coder& original_;
-    Coder copy_;
-};
-
 // Writes or fills in bands. Coder is a RangeEncoder or a RangeDecoder:
 //   kWrites; uint32_t code_bit(BitModel&, uint32_t bit), code_raw(uint32_t value, uint32_t count); both return what was
 //   coded, and a decoder ignores the value that it is given.
@@ -131,11 +108,9 @@ class BandCoder {
     }
 
   private:
-    using Surroundings = BandSurroundings;
-
-    bool code_band(const Band& band, const Surroundings& around);
-    void code_block_flags(const Band& band, const Surroundings& around, uint32_t row);
-    bool code_run(const Band& band, const Surroundings& around, uint32_t row, uint32_t begin, uint32_t end);
+    bool code_band(const Band& band, const BandSurroundings& around);
+    void code_block_flags(const Band& band, const BandSurroundings& around, uint32_t row);
+    bool code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end);
     void clear_empty_blocks(uint32_t columns);
 
     Coder& coder_;
@@ -197,8 +172,8 @@ GIM_ALWAYS_INLINE bool code_magnitude(Coder& coder, BandModels& models, uint32_t
 
 // One flag per block of the block row that begins at `row`.
 template <class Coder>
-void BandCoder<Coder>::code_block_flags(const Band& band, const Surroundings& around, uint32_t row) {
-    const uint32_t blocks = (band.columns + 7) / 8;
+void BandCoder<Coder>::code_block_flags(const Band& band, const BandSurroundings& around, uint32_t row) {
+    const uint32_t blocks = block_count(band.columns);
     uint32_t left = 1;
     for (uint32_t b = 0; b < blocks; ++b) {
         uint32_t parents = 0;  // triples that are not zero; three are as good as more
@@ -225,11 +200,11 @@ void BandCoder<Coder>::code_block_flags(const Band& band, const Surroundings& ar
 
 // Columns begin .. end-1 of a row, all in blocks that are not empty.
 template <class Coder>
-bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, uint32_t row, uint32_t begin,
+bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin,
                                 uint32_t end) {
     expect(around, row, begin, end, work_);
-    HeldCoder<Coder> held(&coder_);
-    auto& coder = held.get();
+    // A decoder is copied, so that its state can stay in registers; where it fails, nobody goes on.
+    std::conditional_t<Coder::kWrites, Coder&, Coder> coder = coder_;
     BandModels& models = models_;
     const BandWeights &first = around.weights[0], &later = around.weights[1];
     const bool paired = models.kind == CoefficientKind::kInFrames;
@@ -287,6 +262,7 @@ bool BandCoder<Coder>::code_run(const Band& band, const Surroundings& around, ui
         if (!code(2, set, e2 + later.second * magnitude[1], paired && magnitude[1] == 0)) return false;
         std::copy_n(magnitude, 3, left);
     }
+    if constexpr (!Coder::kWrites) coder_ = coder;
     return true;
 }
 
@@ -300,8 +276,8 @@ void BandCoder<Coder>::clear_empty_blocks(uint32_t columns) {
 }
 
 template <class Coder>
-bool BandCoder<Coder>::code_band(const Band& band, const Surroundings& around) {
-    const uint32_t blocks = (band.columns + 7) / 8;
+bool BandCoder<Coder>::code_band(const Band& band, const BandSurroundings& around) {
+    const uint32_t blocks = block_count(band.columns);
     std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // with the room on either side
     std::fill_n(work_.full_above, blocks, 1u);
     for (uint32_t row = 0; row < band.rows; ++row) {

@@ -98,7 +98,7 @@ BandWork::BandWork(uint32_t* memory, uint32_t columns) {
     full_above = memory;
 }
 
-size_t BandWork::size(uint32_t columns) { return row_size(columns) * kRows + columns / 8 + 1; }
+size_t BandWork::size(uint32_t columns) { return row_size(columns) * kRows + block_count(columns); }
 
 void expect(const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end, const BandWork& work) {
     const auto first = static_cast<ptrdiff_t>(begin), last = static_cast<ptrdiff_t>(end);

@@ -14,6 +14,9 @@ namespace gim {
 
 inline uint32_t magnitude_of(int32_t v) { return static_cast<uint32_t>(v < 0 ? -v : v); }
 
+// Blocks of 8x8 triples beside each other; those that are all zero are not coded.
+inline constexpr uint32_t block_count(uint32_t columns) { return (columns + 7) / 8; }
+
 // What is known besides the band itself: the band above in the pyramid and those of the same level coded before.
 struct BandSurroundings {
     Orientation orientation = Orientation::kHorizontal;
