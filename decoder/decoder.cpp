@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "decoder/image_decoder.h"
-#include "decoder/read_charts.h"
+#include "decoder/charts/read_charts.h"
 #include "decoder/reopen.h"
-#include "decoder/triangulate.h"
+#include "decoder/squares/square_decoder.h"
+#include "decoder/squares/triangulate.h"
 #include "gim/decoder.h"
 
 namespace gim {

@@ -1,8 +1,8 @@
 // Attribute planes of the C interface: normals and colours on grids of their own.  spec/gim-format.md, "Planes".
 #include <algorithm>
 
-#include "decoder/image_decoder.h"
 #include "decoder/reopen.h"
+#include "decoder/squares/square_decoder.h"
 #include "decoder/vector3.h"
 #include "format/chart_table.h"
 #include "format/plane_code.h"

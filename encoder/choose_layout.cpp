@@ -1,7 +1,7 @@
 #include "encoder/choose_layout.h"
 
-#include "encoder/multi_chart.h"
-#include "encoder/square_images.h"
+#include "encoder/charts/multi_chart.h"
+#include "encoder/squares/square_images.h"
 
 namespace gim {
 

@@ -1,8 +1,8 @@
 // --layout auto: one square or charts, whichever should give the better PSNR for the same budget.
 #pragma once
 
-#include "encoder/mesh.h"
-#include "encoder/stage_clock.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {

@@ -5,16 +5,16 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/base/result.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/charts/encode_charts.h"
 #include "encoder/choose_layout.h"
-#include "encoder/clean.h"
-#include "encoder/encode_charts.h"
-#include "encoder/encode_squares.h"
+#include "encoder/code/rate_control.h"
 #include "encoder/finish_encoding.h"
-#include "encoder/input_colors.h"
-#include "encoder/rate_control.h"
-#include "encoder/result.h"
-#include "encoder/square_images.h"
-#include "encoder/stage_clock.h"
+#include "encoder/planes/input_colors.h"
+#include "encoder/squares/encode_squares.h"
+#include "encoder/squares/square_images.h"
+#include "encoder/surface/clean.h"
 
 namespace gim {
 

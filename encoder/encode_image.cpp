@@ -1,11 +1,11 @@
 // An existing geometry image -> .gim: the driver for images that are sampled already.
 #include <algorithm>
 
-#include "encoder/encode_squares.h"
-#include "encoder/grid_surface.h"
-#include "encoder/import_image.h"
-#include "encoder/result.h"
-#include "encoder/stage_clock.h"
+#include "encoder/base/result.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/image/gluing.h"
+#include "encoder/squares/encode_squares.h"
+#include "encoder/squares/import_image.h"
 
 namespace gim {
 namespace {

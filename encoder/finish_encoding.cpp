@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "encoder/compare_meshes.h"
-#include "encoder/decode_surface.h"
-#include "encoder/level_report.h"
-#include "encoder/rate_control.h"
-#include "encoder/result.h"
+#include "encoder/base/result.h"
+#include "encoder/code/decode_surface.h"
+#include "encoder/code/level_report.h"
+#include "encoder/code/rate_control.h"
+#include "encoder/surface/compare_meshes.h"
 #include "format/chart_table.h"
 #include "gim/decoder.h"
 

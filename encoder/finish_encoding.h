@@ -9,11 +9,11 @@
 #include <new>
 #include <string>
 
-#include "encoder/fit_coded.h"
-#include "encoder/make_planes.h"
-#include "encoder/mesh.h"
-#include "encoder/stage_clock.h"
-#include "encoder/write_gim.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/fit/fit_coded.h"
+#include "encoder/planes/make_planes.h"
+#include "encoder/squares/write_squares.h"
+#include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {

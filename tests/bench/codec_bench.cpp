@@ -8,9 +8,9 @@
 
 #include "decoder/range_decoder.h"
 #include "decoder/synthesis.h"
-#include "encoder/code_bands.h"
-#include "encoder/import_image.h"
-#include "encoder/write_gim.h"
+#include "encoder/code/code_bands.h"
+#include "encoder/squares/import_image.h"
+#include "encoder/squares/write_squares.h"
 #include "gim/decoder.h"
 
 namespace gim {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "corpus/generators.h"
-#include "encoder/boundary_map.h"
-#include "encoder/clean.h"
-#include "encoder/cut.h"
-#include "encoder/parametrize.h"
-#include "encoder/write_gim.h"
+#include "encoder/squares/boundary_map.h"
+#include "encoder/squares/cut.h"
+#include "encoder/squares/parametrize.h"
+#include "encoder/squares/write_squares.h"
+#include "encoder/surface/clean.h"
 #include "gim/decoder.h"
 #include "gim/encoder.h"
 

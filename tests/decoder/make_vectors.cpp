@@ -6,16 +6,16 @@
 #include <functional>
 #include <limits>
 
-#include "encoder/code_bands.h"
-#include "encoder/wavelet_analysis.h"
-#include "encoder/write_charts.h"
-#include "encoder/write_gim.h"
+#include "encoder/charts/write_charts.h"
+#include "encoder/code/code_bands.h"
+#include "encoder/code/wavelet_analysis.h"
+#include "encoder/squares/write_squares.h"
 #include "format/checksum.h"
 #include "format/plane_code.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "tests/decoder/vectors.h"
-#include "tests/encoder/made_charts.h"
+#include "tests/encoder/charts/made_charts.h"
 #include "tests/format/random_sideband.h"
 #include "tests/format/raw_chart_table.h"
 

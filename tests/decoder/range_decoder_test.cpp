@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "encoder/range_encoder.h"
+#include "encoder/code/range_encoder.h"
 #include "format/band_code.h"
 #include "tests/format/random_sideband.h"
 

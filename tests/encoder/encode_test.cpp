@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "corpus/corpus.h"
-#include "encoder/decode_surface.h"
+#include "encoder/code/decode_surface.h"
 #include "gim/decoder.h"
 #include "gim/encoder.h"
 #include "tests/models.h"

@@ -6,9 +6,9 @@
 #include <functional>
 #include <numbers>
 
-#include "encoder/geometry_image.h"
-#include "encoder/mesh.h"
-#include "encoder/multi_chart_image.h"
+#include "encoder/charts/multi_chart_image.h"
+#include "encoder/image/geometry_image.h"
+#include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "corpus/corpus.h"
-#include "encoder/clean.h"
-#include "encoder/mesh.h"
+#include "encoder/surface/clean.h"
+#include "encoder/surface/mesh.h"
 
 namespace gim {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "encoder/range_encoder.h"
+#include "encoder/code/range_encoder.h"
 #include "format/bits.h"
 #include "format/bytes.h"
 

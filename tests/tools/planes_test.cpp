@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corpus/generators.h"
-#include "encoder/input_colors.h"
+#include "encoder/planes/input_colors.h"
 #include "tests/tools/test_files.h"
 #include "tools/commands.h"
 #include "tools/input.h"

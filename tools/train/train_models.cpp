@@ -20,7 +20,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "decoder/image_decoder.h"
+#include "decoder/squares/square_decoder.h"
 #include "format/band_code.h"
 #include "format/plane_code.h"
 

@@ -1,0 +1,153 @@
+#include "decoder/charts/read_charts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "decoder/charts/chart_surface.h"
+#include "decoder/squares/square_decoder.h"
+
+namespace gim {
+namespace {
+
+// One level, decoded and triangulated.
+struct Surface {
+    ChartLevelShape shape;
+    ChartWorkspace ws;
+    uint32_t* triangles = nullptr;    // flat samples
+    float* vertex_normals = nullptr;  // room for them
+    const float* samples = nullptr;   // units
+
+    void lay_out(Arena* arena) {
+        ws = lay_out_charts(shape, arena);
+        triangles = arena->take<uint32_t>(size_t{shape.size.triangles} * 3);
+        vertex_normals = arena->take<float>(size_t{shape.size.vertices} * 3);
+    }
+};
+
+uint64_t scratch_size(const ChartLevelShape& shape) {
+    Surface surface;
+    surface.shape = shape;
+    Arena arena(nullptr);
+    surface.lay_out(&arena);
+    return arena.used();
+}
+
+// Of a sample of the full resolution's box, in the rectangle.
+void set_texcoords(const Header& header, const ChartBox& box, uint32_t column, uint32_t row, float* uv) {
+    uv[0] = static_cast<float>(box.atlas_column + static_cast<int32_t>(column)) / static_cast<float>(header.width - 1);
+    uv[1] = static_cast<float>(box.atlas_row + static_cast<int32_t>(row)) / static_cast<float>(header.height - 1);
+}
+
+// Boxes may lie partly outside of the rectangle, but nothing that is defined.
+bool lie_in_grid(const ChartLevelShape& shape, const ChartWorkspace& ws) {
+    for (uint32_t c = 0; c < shape.chart_count; ++c) {
+        const DecodedChart& chart = ws.charts[c];
+        for (uint32_t k = 0; k < chart.border.border_length; ++k) {  // what is inside lies between
+            const uint32_t i = chart.border.samples[k];
+            if (chart.grid_column + i % chart.columns >= shape.columns ||
+                chart.grid_row + i / chart.columns >= shape.rows)
+                return false;
+        }
+    }
+    return true;
+}
+
+Status decode(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
+              const Memory& scratch, Surface* surface) {
+    if (Status s = open_charts(header, file, limits, level, &surface->shape); s != Status::kOk) return s;
+    if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
+    if (scratch.size < scratch_size(surface->shape)) return Status::kScratchTooSmall;
+    Arena arena(scratch.bytes);
+    surface->lay_out(&arena);
+    if (Status s = decode_charts(header, file, limits, surface->shape, surface->ws, &surface->samples);
+        s != Status::kOk)
+        return s;
+    if (!lie_in_grid(surface->shape, surface->ws)) return Status::kMalformed;
+    const bool as_told = triangulate_charts(surface->shape, surface->ws, surface->samples, surface->triangles,
+                                            surface->shape.size.triangles);
+    return as_told ? Status::kOk : Status::kMalformed;
+}
+
+}  // namespace
+
+Status chart_level_info(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                        uint32_t level, gim_level_info* info) {
+    ChartLevelShape shape;
+    if (Status s = open_charts(header, file, limits, level, &shape); s != Status::kOk) return s;
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (Status s = find_level_chunk(header, level, &chunk, &offset); s != Status::kOk) return s;
+    *info = {};
+    info->width = shape.columns;
+    info->height = shape.rows;
+    info->coarsest_level = header.level_count - 1;
+    info->vertex_count = shape.size.vertices;
+    info->triangle_count = shape.size.triangles;
+    info->prefix_size = offset + chunk.size;
+    info->scratch_size = scratch_size(shape);
+    return Status::kOk;
+}
+
+Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                         uint32_t level, uint32_t* path_count) {
+    ChartLevelShape shape;
+    if (Status s = open_charts(header, file, limits, level, &shape); s != Status::kOk) return s;
+    if (path_count) *path_count = shape.path_count;
+    return Status::kOk;
+}
+
+Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                         uint32_t level, const SurfaceArrays& out, const Memory& scratch) {
+    Surface surface;
+    if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
+    const ChartLevelShape& shape = surface.shape;
+    for_each_chart_vertex(
+        shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row, uint32_t sample) {
+            to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
+            if (out.texcoords)
+                set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
+        });
+    if (out.normals) chart_normals(shape, surface.ws, surface.samples, surface.triangles, out.normals);
+    if (out.triangles) {
+        for (size_t k = 0; k < size_t{shape.size.triangles} * 3; ++k)
+            out.triangles[k] = surface.ws.point[surface.triangles[k]];
+    }
+    return Status::kOk;
+}
+
+Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
+                         uint32_t level, const SurfaceArrays& out, const Memory& scratch) {
+    Surface surface;
+    if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
+    const ChartLevelShape& shape = surface.shape;
+    const size_t count = size_t{shape.columns} * shape.rows * 3;
+    std::fill_n(out.positions, count, std::numeric_limits<float>::quiet_NaN());
+    if (out.normals) {
+        std::fill_n(out.normals, count, 0.0f);
+        chart_normals(shape, surface.ws, surface.samples, surface.triangles, surface.vertex_normals);
+    }
+    if (out.texcoords) std::fill_n(out.texcoords, count / 3 * 2, 0.0f);
+    uint32_t* place = surface.ws.queue;  // of each flat sample in the grid
+    for (uint32_t c = 0; c < shape.chart_count; ++c) {
+        const DecodedChart& chart = surface.ws.charts[c];
+        for (uint32_t i = 0; i < chart.columns * chart.rows; ++i) {
+            const uint32_t sample = chart.first + i;
+            if (surface.ws.depth[sample] == kUndefined) continue;
+            const uint32_t column = chart.grid_column + i % chart.columns, row = chart.grid_row + i / chart.columns;
+            place[sample] = row * shape.columns + column;
+            to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{place[sample]} * 3);
+            if (out.texcoords)
+                set_texcoords(header, chart.box, (i % chart.columns) << level, (i / chart.columns) << level,
+                              out.texcoords + size_t{place[sample]} * 2);
+            if (out.normals)
+                std::copy_n(surface.vertex_normals + size_t{surface.ws.point[sample]} * 3, 3,
+                            out.normals + size_t{place[sample]} * 3);
+        }
+    }
+    if (out.triangles) {
+        for (size_t k = 0; k < size_t{shape.size.triangles} * 3; ++k) out.triangles[k] = place[surface.triangles[k]];
+    }
+    return Status::kOk;
+}
+
+}  // namespace gim

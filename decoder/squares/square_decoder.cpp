@@ -1,0 +1,150 @@
+#include "decoder/squares/square_decoder.h"
+
+#include <algorithm>
+
+#include "format/sideband_code.h"
+
+namespace gim {
+namespace {
+
+// The part of a level chunk that belongs to one image.
+Status image_stream(const Header& header, std::span<const uint8_t> payload, uint32_t image, uint32_t level,
+                    std::span<const uint8_t>* stream) {
+    if (header.image_count() == 1) {
+        *stream = payload;
+        return Status::kOk;
+    }
+    ByteReader reader(payload);
+    uint64_t offset = 0, size = 0, total = 0;
+    for (uint32_t i = 0; i < header.image_count(); ++i) {
+        if (level >= header.level_count_of(i)) continue;
+        uint64_t one = 0;
+        if (!reader.read_leb128(&one)) return Status::kMalformed;
+        if (i == image) {
+            offset = total;
+            size = one;
+        }
+        total += one;
+    }
+    if (total != reader.left()) return Status::kMalformed;
+    *stream = payload.subspan(reader.position() + static_cast<size_t>(offset), static_cast<size_t>(size));
+    return Status::kOk;
+}
+
+template <class Wavelet>
+Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
+                      const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
+    const PyramidShape shape = square_shape(header.side_exponents[image], level, detail_coding_of(header),
+                                            1 << (header.bits - 1), header.tangential > 0 ? &seams : nullptr);
+    PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
+    new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
+    for (uint32_t l = header.level_count_of(image); l-- > level;) {
+        Chunk chunk;
+        uint64_t offset = 0;
+        std::span<const uint8_t> payload, stream;
+        if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
+        if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
+        if (Status s = image_stream(header, payload, image, l, &stream); s != Status::kOk) return s;
+        if (Status s = decode_stream(decoder, ws.pyramid, stream, l); s != Status::kOk) return s;
+    }
+    const size_t side = size_t{(header.side(image) - 1) >> level} + 1;
+    *samples = to_units<typename Wavelet::Sample>(ws.pyramid.images[0], side * side * 3);
+    return Status::kOk;
+}
+
+}  // namespace
+
+void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
+    const uint32_t low_columns = low_count(columns), low_rows = low_count(rows);
+    const size_t all = size_t{columns} * rows * 3, low = size_t{low_columns} * low_rows * 3;
+    // Less would do for bands, but a base is read into their place.
+    ws->bands[0] = arena->take<int32_t>(all);
+    ws->bands[1] = arena->take<int32_t>(low);
+    ws->images[0] = arena->take<float>(all);
+    ws->images[1] = arena->take<float>(low);
+}
+
+void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws) {
+    ws->models = arena->take<BandModels>(1);
+    ws->band_work = BandWork(arena->take<uint32_t>(BandWork::size(columns)), columns);
+    ws->synthesis = arena->take<float>(synthesis_work_size(columns));
+}
+
+PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
+    const size_t ring = ring_length(side);
+    PlaneWorkspace ws;
+    lay_out_coder(side, arena, &ws.pyramid);
+    lay_out_planes(side, side, arena, &ws.pyramid);
+    ws.class_of = arena->take<uint32_t>(ring);
+    ws.pyramid.rim = ws.class_of;  // done with before classes are made
+    ws.fuse.sums = arena->take<float>(ring * 3);
+    ws.fuse.first = arena->take<uint32_t>(ring);
+    ws.fuse.members = arena->take<uint32_t>(ring);
+    ws.fuse.outer = arena->take<float>(ring * 3);
+    ws.fuse.inner = arena->take<float>(ring * 3);
+    return ws;
+}
+
+ImageWorkspace lay_out(uint32_t side, Arena* arena) {
+    ImageWorkspace ws{lay_out_plane(side, arena)};
+    ws.triangulate = {arena->take<float>(size_t{side} * 6), arena->take<uint32_t>(side - 1)};
+    // The bands are done with when normals are computed, but hold a little less.
+    ws.normals = arena->take<float>(size_t{side} * side * 3);
+    return ws;
+}
+
+Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
+                    const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
+    const Status status = header.coding == Coding::kLossless
+                              ? decode_pyramid<Reversible53>(header, file, image, level, seams, ws, samples)
+                              : decode_pyramid<Irreversible97>(header, file, image, level, seams, ws, samples);
+    if (status != Status::kOk) return status;
+    const uint32_t side = ((header.side(image) - 1) >> level) + 1;
+    ring_classes(seams, side, {ws.class_of, ring_length(side)});
+    fuse(side, ws.class_of, ring_class_count(seams, side), *samples, ws.fuse);
+    return Status::kOk;
+}
+
+bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset) {
+    ChunkWalk walk(header);
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == type) return true;
+    }
+    return false;
+}
+
+Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload) {
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (!find_chunk(header, ChunkType::kSeams, &chunk, &offset)) return Status::kMalformed;
+    return read_payload(file, chunk, offset, payload);
+}
+
+Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams) {
+    std::span<const uint8_t> payload;
+    if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
+    for (uint32_t i = 0;; ++i) {
+        std::array<CutPath, kMaxCutPaths> paths;
+        ParsedSideband parsed;
+        if (Status s = parse_sideband(payload, paths, &parsed); s != Status::kOk) return s;
+        payload = payload.subspan(parsed.size);
+        if (i + 1 == header.image_count() && !payload.empty()) return Status::kMalformed;
+        if (i < image) continue;
+        if (Status s =
+                build_seam_table(parsed.node_side, parsed.start, std::span(paths).first(parsed.path_count), seams);
+            s != Status::kOk)
+            return s;
+        return level_is_closed(*seams, header.side(image)) ? Status::kOk : Status::kMalformed;
+    }
+}
+
+Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset) {
+    ChunkWalk walk(header);
+    uint32_t next = header.level_count;
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == ChunkType::kLevel && --next == level) return Status::kOk;
+    }
+    return Status::kMalformed;
+}
+
+}  // namespace gim

@@ -1,0 +1,130 @@
+#include "decoder/squares/triangulate.h"
+
+#include <algorithm>
+
+#include "decoder/vector3.h"
+#include "format/seam.h"
+
+namespace gim {
+namespace {
+
+// a b   a: first sample of the cell; rows go down, columns to the right; seen from outside the row axis points up, so
+// c d   that a, b, d is counter-clockwise (format/ring.h).
+void write_cell(uint32_t a, uint32_t b, uint32_t c, uint32_t d, bool main, uint32_t* out) {
+    out[0] = a;
+    out[1] = b;
+    out[2] = main ? d : c;
+    out[3] = main ? a : b;
+    out[4] = d;
+    out[5] = c;
+}
+
+// The same for cells whose vertices rise by 1 along both rows. is_main: 0 or 1 for each.
+void write_inner_cells(uint32_t a, uint32_t c, const uint32_t* is_main, uint32_t cells, uint32_t* __restrict out) {
+    const uint32_t b = a + 1, d = c + 1;
+    for (uint32_t i = 0; i < cells; ++i, out += 6) {
+        const bool main = is_main[i] != 0;
+        out[0] = a + i;
+        out[1] = b + i;
+        out[2] = main ? d + i : c + i;
+        out[3] = main ? a + i : b + i;
+        out[4] = d + i;
+        out[5] = c + i;
+    }
+}
+
+// x, y and z of a row of samples, each by itself, so that loops over the row can be vectorised.
+void split_row(const float* samples, size_t side, float* __restrict row) {
+    for (size_t i = 0; i < side; ++i) {
+        row[i] = samples[3 * i];
+        row[side + i] = samples[3 * i + 1];
+        row[2 * side + i] = samples[3 * i + 2];
+    }
+}
+
+// 1 for each cell between two split rows whose main diagonal is the shorter one, else 0.
+void find_shorter_main(const float* __restrict a, const float* __restrict c, size_t side,
+                       uint32_t* __restrict is_main) {
+    const auto squared = [](float x, float y, float z) { return x * x + y * y + z * z; };
+    for (size_t i = 0; i + 1 < side; ++i) {
+        const size_t x = i, y = side + i, z = 2 * side + i;
+        const float main = squared(a[x] - c[x + 1], a[y] - c[y + 1], a[z] - c[z + 1]);
+        const float anti = squared(a[x + 1] - c[x], a[y + 1] - c[y], a[z + 1] - c[z]);
+        is_main[i] = main <= anti ? 1 : 0;
+    }
+}
+
+}  // namespace
+
+uint32_t VertexNumbers::at(uint32_t row, uint32_t column) const {
+    if (!class_of) return row * side + column;
+    if (on_rim(side, row, column)) return class_of[ring_index(side, row, column)];
+    return class_count + (row - 1) * (side - 2) + column - 1;
+}
+
+void triangulate(const float* samples, uint32_t side, const uint32_t* class_of, const VertexNumbers& numbers,
+                 const TriangulateWork& work, uint32_t* triangles) {
+    const auto class_at = [class_of](uint32_t k) { return class_of[k]; };
+    const uint32_t cells = side - 1;
+    const uint32_t* is_main = work.is_main;
+    float *top = work.rows, *bottom = work.rows + size_t{side} * 3;
+    split_row(samples, side, top);
+    for (uint32_t r = 0; r < cells; ++r, triangles += size_t{cells} * 6) {
+        split_row(samples + size_t{r + 1} * side * 3, side, bottom);
+        find_shorter_main(top, bottom, side, work.is_main);
+        std::swap(top, bottom);
+        const auto write_rim_cells = [&](uint32_t begin, uint32_t end) {
+            uint32_t id[4] = {numbers.at(r, begin), 0, numbers.at(r + 1, begin), 0};
+            for (uint32_t i = begin; i < end; ++i) {
+                id[1] = numbers.at(r, i + 1);
+                id[3] = numbers.at(r + 1, i + 1);
+                const Split split = rim_split(side, r, i, class_at);
+                const bool main = split == Split::kMain || (split != Split::kAnti && is_main[i] != 0);
+                write_cell(id[0], id[1], id[2], id[3], main, triangles + size_t{i} * 6);
+                id[0] = id[1];
+                id[2] = id[3];
+            }
+        };
+        if (r == 0 || r + 1 == cells) {
+            write_rim_cells(0, cells);
+        } else {
+            write_rim_cells(0, 1);
+            write_inner_cells(numbers.at(r, 1), numbers.at(r + 1, 1), is_main + 1, cells - 2, triangles + 6);
+            write_rim_cells(cells - 1, cells);
+        }
+    }
+}
+
+void sample_normals(const float* samples, uint32_t side, const uint32_t* class_of, uint32_t class_count, float* sums,
+                    float* normals) {
+    const size_t width = size_t{side} * 3;
+    for (uint32_t r = 0; r < side; ++r) {
+        const float* up = samples + size_t{r == 0 ? 0 : r - 1} * width;
+        const float* down = samples + size_t{std::min(r + 1, side - 1)} * width;
+        const float* row = samples + size_t{r} * width;
+        for (uint32_t c = 0; c < side; ++c) {
+            const float* left = row + size_t{c == 0 ? 0 : c - 1} * 3;
+            const float* right = row + size_t{std::min(c + 1, side - 1)} * 3;
+            float u[3], v[3];
+            for (int k = 0; k < 3; ++k) {
+                u[k] = right[k] - left[k];
+                v[k] = down[size_t{c} * 3 + k] - up[size_t{c} * 3 + k];
+            }
+            float* n = normals + size_t{r} * width + size_t{c} * 3;
+            cross(u, v, n);
+        }
+    }
+    const uint32_t ring = ring_length(side);
+    const auto normal_at = [&](uint32_t k) {
+        const GridPoint p = ring_point(side, k);
+        return normals + size_t{p.row} * width + size_t{p.column} * 3;
+    };
+    std::fill_n(sums, size_t{class_count} * 3, 0.0f);
+    for (uint32_t i = 0; i < ring; ++i) {
+        for (int k = 0; k < 3; ++k) sums[size_t{class_of[i]} * 3 + k] += normal_at(i)[k];
+    }
+    for (uint32_t i = 0; i < ring; ++i) std::copy_n(sums + size_t{class_of[i]} * 3, 3, normal_at(i));
+    for (size_t i = 0; i < size_t{side} * side; ++i) normalize(normals + i * 3);
+}
+
+}  // namespace gim

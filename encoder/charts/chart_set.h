@@ -1,0 +1,41 @@
+// A chartified surface taken apart: every chart as a mesh of its own, its border as a loop of cut-paths, and which path
+// lies on the other side of which.
+// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5, "Cut-Nodes", "Cut-Paths".
+//
+// A cut-node is a vertex where the number of border edges is not two. We differ: a seam that closes upon itself without
+// meeting one (two charts that make up a sphere) gets three cut-nodes of its own, an input boundary of a single chart
+// one, so that every border is made of paths.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "encoder/charts/chartify.h"
+#include "encoder/surface/mesh.h"
+
+namespace gim {
+
+// A directed run of border edges between two cut-nodes.
+struct ChartPath {
+    uint32_t first = 0;  // index into Chart::loop of its first vertex; it ends where the next path begins
+    uint32_t mate_chart = kNone, mate_path = kNone;  // the path on the other side, which runs the other way; kNone: an
+                                                     // input boundary
+    uint32_t begin_node = 0, end_node = 0;           // vertices of the surface
+};
+
+struct Chart {
+    Mesh mesh;
+    std::vector<uint32_t> source_vertex, source_face;  // in the surface, per vertex and face of `mesh`
+    std::vector<uint32_t> loop;    // border vertices of `mesh`, faces on the left; starts at a cut-node
+    std::vector<ChartPath> paths;  // in loop order
+
+    // Index after the last vertex of path p in `loop`, counted on past its end: the end node is loop[end % size].
+    uint32_t path_end(size_t p) const {
+        return p + 1 < paths.size() ? paths[p + 1].first : static_cast<uint32_t>(loop.size());
+    }
+};
+
+// In: charts that are disks with simple borders (charts_are_disks). O(F).
+std::vector<Chart> take_apart(const Mesh& mesh, const Topology& topology, const Chartification& charts);
+
+}  // namespace gim

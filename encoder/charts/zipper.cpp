@@ -1,0 +1,544 @@
+#include "encoder/charts/zipper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "encoder/base/result.h"
+#include "encoder/surface/topology_summary.h"
+
+namespace gim {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Cost of a point's first further sample, in squared mean spacings; the second costs three times as much, and so on.
+constexpr double kSingleStep = 0.5;
+// Least distance between unified points along a path, in mean spacings.
+constexpr double kLeastSpacing = 0.3;
+
+// A cut-path as a curve: arc length from its begin node along the surface.
+struct Curve {
+    std::vector<Vec2> map;  // in samples of the image
+    std::vector<Vec3> surface;
+    std::vector<double> along;  // 0 .. length
+
+    double length() const { return along.back(); }
+};
+
+Curve curve_of(const Chart& chart, const ChartMap& map, const ChartPose& pose, size_t path) {
+    Curve curve;
+    for (uint32_t i = chart.paths[path].first; i <= chart.path_end(path); ++i) {
+        const uint32_t v = chart.loop[i % chart.loop.size()];
+        curve.map.push_back(pose(map.uv[v]));
+        curve.surface.push_back(chart.mesh.positions[v]);
+        curve.along.push_back(curve.along.empty()
+                                  ? 0
+                                  : curve.along.back() +
+                                        (curve.surface.back() - curve.surface[curve.surface.size() - 2]).norm());
+    }
+    return curve;
+}
+
+// Where on the curve, as a part of its length, the point closest to p in the map lies.
+double project(const Curve& curve, const Vec2& p) {
+    double nearest = kInfinity, at = 0;
+    for (size_t k = 0; k + 1 < curve.map.size(); ++k) {
+        const Vec2 edge = curve.map[k + 1] - curve.map[k];
+        const double length2 = edge.squaredNorm();
+        const double t = length2 > 0 ? std::clamp((p - curve.map[k]).dot(edge) / length2, 0.0, 1.0) : 0;
+        const double distance = (p - curve.map[k] - t * edge).squaredNorm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        at = curve.along[k] + t * (curve.along[k + 1] - curve.along[k]);
+    }
+    return curve.length() > 0 ? at / curve.length() : 0;
+}
+
+Vec3 point_at(const Curve& curve, double part) {
+    const double target = std::clamp(part, 0.0, 1.0) * curve.length();
+    const auto after = std::upper_bound(curve.along.begin() + 1, curve.along.end() - 1, target);
+    const auto k = static_cast<size_t>(after - curve.along.begin());
+    const double step = curve.along[k] - curve.along[k - 1];
+    const double t = step > 0 ? std::clamp((target - curve.along[k - 1]) / step, 0.0, 1.0) : 0;
+    return (1 - t) * curve.surface[k - 1] + t * curve.surface[k];
+}
+
+// ---- cut-nodes ----------------------------------------------------------------------------------------------------
+
+// The loop index of each node's sample: in order around the loop, `gap` apart at least, least sum of squared distances.
+// Empty when the loop is too short. Index k of the result lies within one turn after that of the first node.
+std::vector<uint32_t> place_nodes(const std::vector<Vec2>& nodes, const std::vector<Vec2>& loop, uint32_t gap) {
+    const auto count = static_cast<uint32_t>(nodes.size()), length = static_cast<uint32_t>(loop.size());
+    if (uint64_t{count} * gap > length) return {};
+    // The first node goes to one of the samples nearest to it; the others follow by dynamic programming.
+    std::vector<uint32_t> starts(length);
+    for (uint32_t i = 0; i < length; ++i) starts[i] = i;
+    std::stable_sort(starts.begin(), starts.end(), [&](uint32_t a, uint32_t b) {
+        return (loop[a] - nodes[0]).squaredNorm() < (loop[b] - nodes[0]).squaredNorm();
+    });
+    constexpr size_t kMostStarts = 8;
+    starts.resize(std::min<size_t>(starts.size(), kMostStarts));
+    double least = kInfinity;
+    std::vector<uint32_t> best;
+    std::vector<std::vector<uint32_t>> choice(count, std::vector<uint32_t>(length, kNone));
+    for (const uint32_t start : starts) {
+        // cost[j]: of the nodes so far when the last is at offset j or before; choice: at which offset it then is.
+        std::vector<double> cost(length, (loop[start] - nodes[0]).squaredNorm()), next_cost(length);
+        std::fill(choice[0].begin(), choice[0].end(), 0);
+        for (uint32_t k = 1; k < count; ++k) {
+            double running = kInfinity;
+            uint32_t at = kNone;
+            for (uint32_t j = 0; j < length; ++j) {
+                const bool room = j >= k * gap && j + (count - k) * gap <= length;
+                if (room && std::isfinite(cost[j - gap])) {
+                    const double here = cost[j - gap] + (loop[(start + j) % length] - nodes[k]).squaredNorm();
+                    if (here < running) running = here, at = j;
+                }
+                next_cost[j] = running;
+                choice[k][j] = at;
+            }
+            cost.swap(next_cost);
+        }
+        if (!(cost[length - 1] < least)) continue;
+        least = cost[length - 1];
+        best.assign(count, 0);
+        uint32_t j = length - 1;
+        for (uint32_t k = count; k-- > 1;) {
+            best[k] = start + choice[k][j];
+            j = choice[k][j] - gap;
+        }
+        best[0] = start;
+    }
+    return best;
+}
+
+// ---- zipper -------------------------------------------------------------------------------------------------------
+
+// The lock-step traversal that moves samples least. t and u: where the samples of both sides are along the curve, from
+// the begin node to the end node, both included; u in the first side's direction. A point takes one sample of either
+// side and then up to `most_extra` more of one of them.
+std::vector<ZipStep> best_zipper(const std::vector<double>& t, const std::vector<double>& u, size_t most_extra) {
+    const size_t rows = t.size(), columns = u.size();
+    const double spacing = 1.0 / static_cast<double>(std::max(rows, columns) - 1);
+    const double single = kSingleStep * spacing * spacing;
+    struct Cell {
+        double cost = kInfinity;
+        int32_t extra = 0;  // further samples of the last point: of the first side, or (negative) of the second
+    };
+    std::vector<Cell> cells(rows * columns);
+    const auto apart = [&](size_t i, size_t j) { return (t[i] - u[j]) * (t[i] - u[j]); };
+    // From the cell before a point, (i, j) being the point's first samples, to all ways in which the point may go on.
+    const auto extend = [&](double cost, size_t i, size_t j) {
+        cost += apart(i, j);
+        const auto offer = [&](size_t x, size_t y, double total, int32_t extra) {
+            Cell& cell = cells[x * columns + y];
+            if (total < cell.cost) cell = {total, extra};
+        };
+        offer(i, j, cost, 0);
+        double sum = cost;
+        for (size_t r = 1; r <= most_extra && i + r < rows; ++r) {
+            sum += apart(i + r, j) + single * static_cast<double>(2 * r - 1);
+            offer(i + r, j, sum, static_cast<int32_t>(r));
+        }
+        sum = cost;
+        for (size_t r = 1; r <= most_extra && j + r < columns; ++r) {
+            sum += apart(i, j + r) + single * static_cast<double>(2 * r - 1);
+            offer(i, j + r, sum, -static_cast<int32_t>(r));
+        }
+    };
+    extend(0, 0, 0);
+    for (size_t i = 0; i + 1 < rows; ++i) {
+        for (size_t j = 0; j + 1 < columns; ++j) {
+            const double cost = cells[i * columns + j].cost;
+            if (std::isfinite(cost)) extend(cost, i + 1, j + 1);
+        }
+    }
+    std::vector<ZipStep> steps;
+    if (!std::isfinite(cells.back().cost)) return steps;
+    for (size_t i = rows - 1, j = columns - 1;;) {
+        const int32_t extra = cells[i * columns + j].extra;
+        const auto count = static_cast<size_t>(std::abs(extra));
+        steps.insert(steps.end(), count, extra > 0 ? ZipStep::kFirst : ZipStep::kSecond);
+        (extra > 0 ? i : j) -= count;
+        if (i == 0 && j == 0) break;
+        steps.push_back(ZipStep::kBoth);
+        --i, --j;
+    }
+    std::reverse(steps.begin(), steps.end());
+    return steps;
+}
+
+// Makes values rise from 0 (first) to 1 (last) with a least step, moving them as little as it takes (least squares, pool
+// adjacent violators).
+void spread(std::vector<double>& values) {
+    const size_t count = values.size();
+    if (count < 3) return;
+    const double least = kLeastSpacing / static_cast<double>(count - 1);
+    struct Pool {
+        double sum;
+        size_t size;
+        double mean() const { return sum / static_cast<double>(size); }
+    };
+    std::vector<Pool> pools;
+    for (size_t k = 1; k + 1 < count; ++k) {
+        pools.push_back({values[k] - least * static_cast<double>(k), 1});
+        while (pools.size() > 1 && pools[pools.size() - 2].mean() >= pools.back().mean()) {
+            const Pool last = pools.back();
+            pools.pop_back();
+            pools.back().sum += last.sum;
+            pools.back().size += last.size;
+        }
+    }
+    size_t k = 1;
+    const double top = 1 - least * static_cast<double>(count - 1);
+    for (const Pool& pool : pools) {
+        const double base = std::clamp(pool.mean(), 0.0, top);
+        for (size_t n = 0; n < pool.size; ++n, ++k) values[k] = base + least * static_cast<double>(k);
+    }
+}
+
+class Zipper {
+  public:
+    Zipper(MultiChartImage image, const std::vector<Chart>& charts, const std::vector<ChartMap>& maps,
+           const Packing& packing)
+        : image_(std::move(image)), charts_(charts), maps_(maps), packing_(packing) {}
+
+    Result<MultiChartImage> run() {
+        owner_ = owners_of(packing_);
+        constexpr int kMostRounds = 10;
+        for (int round = 0;; ++round) {
+            if (auto error = find_loops()) return *error;
+            node_at_.assign(charts_.size(), {});
+            for (uint32_t c = 0; c < charts_.size(); ++c) {
+                if (auto error = cut_loop(c)) return *error;
+            }
+            number_paths();
+            close_all();
+            GIM_TRY(spikes, repair());
+            if (spikes.empty()) return std::move(image_);
+            if (round == kMostRounds) return give_up(spikes.size());
+            for (const uint32_t i : spikes) {
+                image_.mask.defined[i] = 0;
+                image_.positions[i] = Vec3::Zero();
+            }
+        }
+    }
+
+  private:
+    void close_all() {
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) close(c, p);
+        }
+    }
+
+    // Tells which border belongs to which chart.
+    std::optional<Error> find_loops() {
+        loops_ = trace_borders(image_.mask);
+        loop_of_chart_.assign(charts_.size(), kNone);
+        for (uint32_t l = 0; l < loops_.size(); ++l) {
+            const uint32_t c = owner_[loops_[l][0]];
+            if (loop_of_chart_[c] != kNone)
+                return Error{Stage::kSample, "chart " + std::to_string(c) + " is no disk as it was packed"};
+            loop_of_chart_[c] = l;
+        }
+        if (loops_.size() != charts_.size()) return Error{Stage::kSample, "packed charts touch each other"};
+        return std::nullopt;
+    }
+
+    Vec2 place_of(uint32_t sample) const {
+        const uint32_t row = sample / image_.width(), column = sample % image_.width();
+        return {static_cast<double>(column), static_cast<double>(row)};
+    }
+
+    std::optional<Error> cut_loop(uint32_t c) {
+        const Chart& chart = charts_[c];
+        const std::vector<uint32_t>& loop = loops_[loop_of_chart_[c]];
+        std::vector<Vec2> nodes, samples;
+        for (const ChartPath& path : chart.paths)
+            nodes.push_back(packing_.charts[c].chart.pose(maps_[c].uv[chart.loop[path.first]]));
+        for (const uint32_t i : loop) samples.push_back(place_of(i));
+        std::vector<uint32_t> at = place_nodes(nodes, samples, 2);
+        if (at.empty()) at = place_nodes(nodes, samples, 1);
+        if (at.empty())
+            return Error{Stage::kSample, "chart " + std::to_string(c) + " has " + std::to_string(nodes.size()) +
+                                             " corners on a border of " + std::to_string(loop.size()) +
+                                             " samples; ask for more samples or fewer charts"};
+        node_at_[c] = std::move(at);
+        return std::nullopt;
+    }
+
+    // Samples of a path, both nodes included.
+    std::vector<uint32_t> samples_of(uint32_t c, uint32_t p) const {
+        const std::vector<uint32_t>& loop = loops_[loop_of_chart_[c]];
+        const std::vector<uint32_t>& at = node_at_[c];
+        const auto length = static_cast<uint32_t>(loop.size());
+        const uint32_t begin = at[p], end = p + 1 < at.size() ? at[p + 1] : at[0] + length;
+        std::vector<uint32_t> samples;
+        for (uint32_t i = begin; i <= end; ++i) samples.push_back(loop[i % length]);
+        return samples;
+    }
+
+    void number_paths() {
+        image_.seams = {};
+        first_path_.assign(charts_.size(), 0);
+        uint32_t count = 0;
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            first_path_[c] = count;
+            count += static_cast<uint32_t>(charts_[c].paths.size());
+        }
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            image_.seams.loops.push_back({samples_of(c, 0).front(), static_cast<uint32_t>(charts_[c].paths.size())});
+            for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) {
+                const ChartPath& path = charts_[c].paths[p];
+                const uint32_t mate = path.mate_chart == kNone ? kNone : first_path_[path.mate_chart] + path.mate_path;
+                image_.seams.paths.push_back({mate, static_cast<uint32_t>(samples_of(c, p).size() - 1)});
+            }
+        }
+        zipper_of_path_.assign(count, kNone);
+        for (uint32_t k = 0; k < count; ++k) {
+            if (image_.seams.paths[k].mate == kNone || image_.seams.paths[k].mate < k) continue;
+            zipper_of_path_[k] = static_cast<uint32_t>(image_.seams.zippers.size());
+            image_.seams.zippers.emplace_back();
+        }
+    }
+
+    // Where samples lie along a curve; the nodes at its ends.
+    std::vector<double> parts_of(const std::vector<uint32_t>& samples, const Curve& curve) const {
+        std::vector<double> parts;
+        for (const uint32_t i : samples) parts.push_back(project(curve, place_of(i)));
+        parts.front() = 0;
+        parts.back() = 1;
+        return parts;
+    }
+
+    void close(uint32_t c, uint32_t p) {
+        const ChartPath& path = charts_[c].paths[p];
+        const uint32_t number = first_path_[c] + p;
+        const Curve curve = curve_of(charts_[c], maps_[c], packing_.charts[c].chart.pose, p);
+        const std::vector<uint32_t> own = samples_of(c, p);
+        std::vector<double> t = parts_of(own, curve);
+        if (path.mate_chart == kNone) {
+            spread(t);
+            for (size_t i = 0; i < own.size(); ++i) image_.positions[own[i]] = point_at(curve, t[i]);
+            return;
+        }
+        if (image_.seams.paths[number].mate < number) return;  // done from the other side
+        const uint32_t mate_chart = path.mate_chart;
+        const Curve mate_curve =
+            curve_of(charts_[mate_chart], maps_[mate_chart], packing_.charts[mate_chart].chart.pose, path.mate_path);
+        std::vector<uint32_t> other = samples_of(mate_chart, path.mate_path);
+        std::vector<double> u = parts_of(other, mate_curve);
+        std::reverse(other.begin(), other.end());
+        std::reverse(u.begin(), u.end());
+        for (double& x : u) x = 1 - x;
+        std::vector<ZipStep>& steps = image_.seams.zippers[zipper_of_path_[number]];
+        // Long runs of samples in one point make folds; where one side is many times longer there is no way round them.
+        for (size_t most_extra = 5; steps.empty(); most_extra *= 4) steps = best_zipper(t, u, most_extra);
+        // Unified points along the path: where they are on the mean, and which samples they hold.
+        std::vector<double> parts{0};
+        std::vector<double> weight{2};
+        std::vector<std::vector<uint32_t>> members{{own[0], other[0]}};
+        size_t i = 0, j = 0;
+        for (const ZipStep step : steps) {
+            if (step == ZipStep::kBoth) parts.push_back(0), weight.push_back(0), members.emplace_back();
+            if (step != ZipStep::kSecond)
+                ++i, parts.back() += t[i], weight.back() += 1, members.back().push_back(own[i]);
+            if (step != ZipStep::kFirst)
+                ++j, parts.back() += u[j], weight.back() += 1, members.back().push_back(other[j]);
+        }
+        for (size_t k = 0; k < parts.size(); ++k) parts[k] /= weight[k];
+        parts.front() = 0;
+        parts.back() = 1;
+        spread(parts);
+        for (size_t k = 0; k < parts.size(); ++k) {
+            const Vec3 point = point_at(curve, parts[k]);
+            for (const uint32_t sample : members[k]) image_.positions[sample] = point;
+        }
+    }
+
+    // ---- repair: two triangles side by side in one chart may meet two others in its neighbour with the same three
+    // vertices. The vertex between the ends of the doubled edge is then merged with one of them, which flattens both.
+
+    // A step of kBoth, as seen by the border loop of a chart: the pair of points (before, after) it leads between.
+    struct Advance {
+        uint32_t before = 0, after = 0;     // representatives
+        uint32_t zipper = kNone, step = 0;  // kNone: on an input boundary
+    };
+
+    // Around chart c, one entry for each pair of consecutive different points.
+    std::vector<Advance> advances(uint32_t c, const std::vector<uint32_t>& point) const {
+        std::vector<Advance> result;
+        for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) {
+            const std::vector<uint32_t> own = samples_of(c, p);
+            const uint32_t number = first_path_[c] + p, mate = image_.seams.paths[number].mate;
+            if (mate == kNone) {
+                for (size_t i = 0; i + 1 < own.size(); ++i)
+                    result.push_back({point[own[i]], point[own[i + 1]], kNone, 0});
+                continue;
+            }
+            const bool forward = number < mate;
+            const uint32_t zipper = zipper_of_path_[forward ? number : mate];
+            const std::vector<ZipStep>& steps = image_.seams.zippers[zipper];
+            std::vector<Advance> here;
+            size_t at = forward ? 0 : own.size() - 1;  // index into own
+            for (uint32_t k = 0; k < steps.size(); ++k) {
+                const bool moves =
+                    steps[k] == ZipStep::kBoth || steps[k] == (forward ? ZipStep::kFirst : ZipStep::kSecond);
+                const size_t before = at;
+                if (moves) forward ? ++at : --at;
+                if (steps[k] != ZipStep::kBoth) continue;
+                here.push_back({point[own[forward ? before : at]], point[own[forward ? at : before]], zipper, k});
+            }
+            if (!forward) std::reverse(here.begin(), here.end());
+            result.insert(result.end(), here.begin(), here.end());
+        }
+        return result;
+    }
+
+    // Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. Marks
+    // the steps to drop; false when there is no such piece.
+    bool flatten(uint32_t a, uint32_t b, const std::vector<uint32_t>& point,
+                 std::vector<std::vector<uint8_t>>& drop) const {
+        constexpr size_t kLongestPiece = 6;
+        for (uint32_t c = 0; c < charts_.size(); ++c) {
+            const std::vector<Advance> around = advances(c, point);
+            const size_t count = around.size();
+            for (size_t i = 0; i < count; ++i) {
+                if (around[i].before != a && around[i].before != b) continue;
+                const uint32_t end = around[i].before == a ? b : a;
+                for (size_t length = 2; length <= std::min(kLongestPiece, count - 2); ++length) {
+                    if (around[(i + length - 1) % count].after != end) continue;
+                    // One of the piece's steps stays, on the seam with the fewest.
+                    size_t keep = 0;
+                    const auto room = [&](size_t k) {
+                        const uint32_t zipper = around[(i + k) % count].zipper;
+                        if (zipper == kNone) return size_t{0};
+                        const std::vector<ZipStep>& steps = image_.seams.zippers[zipper];
+                        return static_cast<size_t>(std::count(steps.begin(), steps.end(), ZipStep::kBoth));
+                    };
+                    bool possible = true;
+                    for (size_t k = 0; k < length; ++k) {
+                        if (room(k) < room(keep)) keep = k;
+                    }
+                    for (size_t k = 0; k < length; ++k) {
+                        size_t dropped = 0;  // on the same seam; one step at least has to stay there
+                        for (size_t l = 0; l < length; ++l)
+                            dropped += l != keep && around[(i + l) % count].zipper == around[(i + k) % count].zipper;
+                        possible &= k == keep || room(k) > dropped;
+                    }
+                    if (!possible) continue;
+                    for (size_t k = 0; k < length; ++k) {
+                        const Advance& advance = around[(i + k) % count];
+                        if (k != keep) drop[advance.zipper][advance.step] = 1;
+                    }
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    // Samples that are the tips of single triangles over a doubled edge: without them it is a border edge on that side.
+    std::vector<uint32_t> spikes_at(const TopologyAnalysis& analysis, const Reconstruction& surface,
+                                    const std::vector<uint32_t>& point) const {
+        std::set<std::pair<uint32_t, uint32_t>> doubled;
+        for (const uint32_t e : analysis.nonmanifold_edges) {
+            const uint32_t h = analysis.edges.around(e)[0];
+            doubled.insert(std::minmax(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)]));
+        }
+        std::vector<uint32_t> spikes;
+        std::vector<uint8_t> cut(charts_.size(), 0);
+        for (const std::vector<uint32_t>& loop : loops_) {
+            for (size_t k = 0; k < loop.size(); ++k) {
+                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
+                if (!is_spike(image_.mask, loop[k]) || cut[owner_[loop[k]]]) continue;
+                if (doubled.count(std::minmax(point[before], point[after])) == 0) continue;
+                spikes.push_back(loop[k]);
+                cut[owner_[loop[k]]] = 1;  // one at a time: two that touch must not both go
+            }
+        }
+        if (!spikes.empty()) return spikes;
+        // Otherwise an end of the edge, where it runs across a chart.
+        for (const std::vector<uint32_t>& loop : loops_) {
+            for (size_t k = 0; k < loop.size(); ++k) {
+                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
+                if (cut[owner_[loop[k]]] || !can_remove(image_.mask, loop[k])) continue;
+                for (const uint32_t other : loop) {
+                    const auto apart = [&](uint32_t x, uint32_t y) { return std::max(x, y) - std::min(x, y); };
+                    if (other == before || other == after || other == loop[k]) continue;
+                    if (apart(other % image_.width(), loop[k] % image_.width()) > 1) continue;
+                    if (apart(other / image_.width(), loop[k] / image_.width()) > 1) continue;
+                    if (doubled.count(std::minmax(point[other], point[loop[k]])) == 0) continue;
+                    spikes.push_back(loop[k]);
+                    cut[owner_[loop[k]]] = 1;
+                    break;
+                }
+            }
+        }
+        return spikes;
+    }
+
+    static Error give_up(size_t edges) {
+        return {Stage::kSample, "the surface comes together at " + std::to_string(edges) +
+                                    " edges along the seams; the charts are too small for this resolution: ask for "
+                                    "more samples or fewer charts"};
+    }
+
+    // Makes the glued surface a manifold by merging points along the seams. Where that does not do: the samples without
+    // which it should.
+    Result<std::vector<uint32_t>> repair() {
+        constexpr int kMostRounds = 12;
+        for (int round = 0;; ++round) {
+            GIM_TRY(point, glue_samples(image_.mask, image_.seams));
+            GIM_TRY(surface, reconstruct(image_));
+            const TopologyAnalysis analysis = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size());
+            if (analysis.summary.manifold) return std::vector<uint32_t>{};
+            std::vector<std::vector<uint8_t>> drop;
+            for (const auto& steps : image_.seams.zippers) drop.emplace_back(steps.size(), uint8_t{0});
+            bool any = false;
+            for (const uint32_t e : analysis.nonmanifold_edges) {
+                const uint32_t h = analysis.edges.around(e)[0];
+                any |= flatten(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)], point, drop);
+            }
+            if (!any || round == kMostRounds) {
+                std::vector<uint32_t> spikes = spikes_at(analysis, surface, point);
+                if (spikes.empty())
+                    return give_up(analysis.nonmanifold_edges.size() + analysis.nonmanifold_vertices.size());
+                return spikes;
+            }
+            for (size_t z = 0; z < drop.size(); ++z) {
+                std::vector<ZipStep> steps;
+                for (size_t k = 0; k < drop[z].size(); ++k) {
+                    if (drop[z][k]) {
+                        steps.insert(steps.end(), {ZipStep::kFirst, ZipStep::kSecond});
+                    } else {
+                        steps.push_back(image_.seams.zippers[z][k]);
+                    }
+                }
+                image_.seams.zippers[z] = std::move(steps);
+            }
+            close_all();
+        }
+    }
+
+    MultiChartImage image_;
+    const std::vector<Chart>& charts_;
+    const std::vector<ChartMap>& maps_;
+    const Packing& packing_;
+    std::vector<std::vector<uint32_t>> loops_, node_at_;
+    std::vector<uint32_t> owner_, loop_of_chart_, first_path_, zipper_of_path_;
+};
+
+}  // namespace
+
+Result<MultiChartImage> zip(MultiChartImage image, const std::vector<Chart>& charts, const std::vector<ChartMap>& maps,
+                            const Packing& packing) {
+    return Zipper(std::move(image), charts, maps, packing).run();
+}
+
+}  // namespace gim

@@ -1,0 +1,199 @@
+#include "encoder/code/code_bands.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace gim {
+namespace {
+
+// Dead zone. A magnitude is rounded up from this fraction on ...
+constexpr float kRoundUpFrom = 0.55f, kTangentialRoundUpFrom = 0.6f;
+// ... but a single step is left out up to this much more where the neighbours are small, for there it costs most bits.
+constexpr float kLonely = 0.2f;
+constexpr float kNotLonelyFrom = 0.5f;  // mean magnitude of the neighbours, in steps
+// The three were measured on the development models; so was the decoder's reconstruction shift (spec/rationale.md).
+
+// Largest coefficient that the coder takes; only reached by absurdly small steps.
+constexpr float kMaxMagnitude = 0x1p24f;
+
+struct RealBand {
+    const std::vector<float>& values;
+    uint32_t rows, columns;
+
+    float magnitude(uint32_t row, uint32_t column, uint32_t k) const {
+        return std::abs(values[(size_t{row} * columns + column) * 3 + k]);
+    }
+};
+
+// Mean over the eight neighbours and the two other components, each counted as four at most.
+float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32_t k) {
+    constexpr float most = 4;
+    float sum = 0;
+    for (uint32_t other = 0; other < 3; ++other) {
+        if (other != k) sum += std::min(band.magnitude(row, column, other), most);
+    }
+    for (uint32_t r = row - std::min(row, 1u); r <= std::min(row + 1, band.rows - 1); ++r) {
+        for (uint32_t c = column - std::min(column, 1u); c <= std::min(column + 1, band.columns - 1); ++c) {
+            if (r != row || c != column) sum += std::min(band.magnitude(r, c, k), most);
+        }
+    }
+    return sum / 10;
+}
+
+// band: in steps.
+std::vector<int32_t> round_band(const RealBand& band, bool in_frames) {
+    std::vector<int32_t> out(band.values.size());
+    for (uint32_t row = 0, i = 0; row < band.rows; ++row) {
+        for (uint32_t column = 0; column < band.columns; ++column) {
+            for (uint32_t k = 0; k < 3; ++k, ++i) {
+                const float steps = band.magnitude(row, column, k);
+                const float from = in_frames && k > 0 ? kTangentialRoundUpFrom : kRoundUpFrom;
+                if (steps < from) continue;
+                float magnitude = std::floor(steps + (1.0f - from));
+                if (magnitude == 1 && steps < from + kLonely) {
+                    const float lonely = 1.0f - mean_neighbour(band, row, column, k) / kNotLonelyFrom;
+                    if (steps < from + kLonely * lonely) magnitude = 0;
+                }
+                const auto q = static_cast<int32_t>(std::min(magnitude, kMaxMagnitude));
+                out[i] = band.values[i] < 0 ? -q : q;
+            }
+        }
+    }
+    return out;
+}
+
+// The details of one band as multiples of their steps, rounded; and what a decoder makes of them.
+struct QuantizedBand {
+    std::vector<int32_t> integers;
+    std::vector<float> details;
+};
+
+QuantizedBand quantize(const RealBand& band, const FrameField& frames, const DetailSteps& steps,
+                       Orientation orientation) {
+    const size_t count = band.values.size() / 3;
+    std::vector<DetailFrame> frame(steps.in_frames ? count : 0);
+    std::vector<float> step(band.values.size(), steps.of(orientation)), local = band.values;
+    for (size_t i = 0; i < frame.size(); ++i) {
+        frame[i] =
+            frames.at(orientation, static_cast<uint32_t>(i / band.columns), static_cast<uint32_t>(i % band.columns));
+        steps_in(frame[i], steps, orientation, &step[3 * i]);
+        into_frame(frame[i], &band.values[3 * i], &local[3 * i]);
+    }
+    for (size_t i = 0; i < local.size(); ++i) local[i] /= step[i];
+
+    QuantizedBand result{round_band({local, band.rows, band.columns}, steps.in_frames), {}};
+    result.details.resize(local.size());
+    for (size_t i = 0; i < local.size(); ++i) result.details[i] = dequantize(result.integers[i], step[i]);
+    for (size_t i = 0; i < frame.size(); ++i) {
+        const std::array<float, 3> in_frame = {result.details[3 * i], result.details[3 * i + 1],
+                                               result.details[3 * i + 2]};
+        out_of_frame(frame[i], in_frame.data(), &result.details[3 * i]);
+    }
+    return result;
+}
+
+float* detail_at(AnalysisLevel<float>& level, uint32_t side, Orientation orientation, uint32_t row, uint32_t column) {
+    const bool is_horizontal = orientation == Orientation::kHorizontal;
+    const uint32_t columns = is_horizontal ? high_count(side) : low_count(side);
+    return &(is_horizontal ? level.horizontal : level.vertical)[(size_t{row} * columns + column) * 3];
+}
+
+// What mates share becomes the mean of both, copies become zero.
+void share_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t side) {
+    rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+        const DetailPlace from = rim.source_of(orientation, row, column);
+        float *copy = detail_at(level, side, orientation, row, column),
+              *source = detail_at(level, side, from.orientation, from.row, from.column);
+        for (int k = 0; k < 3; ++k) source[k] = 0.5f * (source[k] + copy[k]);
+        std::fill_n(copy, 3, 0.0f);
+    });
+}
+
+void copy_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t side) {
+    rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+        const DetailPlace from = rim.source_of(orientation, row, column);
+        std::copy_n(detail_at(level, side, from.orientation, from.row, from.column), 3,
+                    detail_at(level, side, orientation, row, column));
+    });
+}
+
+// The base is not sparse: plain rounding.
+std::vector<int32_t> quantize_base(const std::vector<float>& values, float step) {
+    std::vector<int32_t> out;
+    for (const float v : values)
+        out.push_back(static_cast<int32_t>(std::floor(std::clamp(v / step, -kMaxMagnitude, kMaxMagnitude) + 0.5f)));
+    return out;
+}
+
+}  // namespace
+
+QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding, const SeamTable* seams) {
+    Pyramid<int32_t> out;
+    out.columns = pyramid.columns;
+    out.rows = pyramid.rows;
+    const uint32_t steps = pyramid.steps();
+    const float base_step = low_band_step(coding.quantizer, steps);
+    out.base = quantize_base(pyramid.base, base_step);
+    Pyramid<float> decoded;  // one step: from the image that a decoder has so far to the next
+    for (const int32_t q : out.base) decoded.base.push_back(static_cast<float>(q) * base_step);
+    decoded.levels.resize(1);
+    for (uint32_t e = 1; e <= steps; ++e) {
+        decoded.columns = pyramid.columns_at(e);
+        decoded.rows = pyramid.rows_at(e);
+        const uint32_t columns = low_count(decoded.columns), rows = low_count(decoded.rows);
+        const DetailSteps detail_steps = coding.steps_at(steps - e + 1);
+        const FrameField frames(decoded.base.data(), columns, rows, detail_steps.cell_area);
+        AnalysisLevel<float> level = pyramid.levels[e - 1];
+        const OwnSharedRim rim(coding.in_frames ? seams : nullptr, decoded.columns);
+        share_details(rim.view(), level, decoded.columns);
+        const uint32_t high_columns = high_count(decoded.columns), high_rows = high_count(decoded.rows);
+        QuantizedBand horizontal =
+            quantize({level.horizontal, rows, high_columns}, frames, detail_steps, Orientation::kHorizontal);
+        QuantizedBand vertical =
+            quantize({level.vertical, high_rows, columns}, frames, detail_steps, Orientation::kVertical);
+        QuantizedBand diagonal =
+            quantize({level.diagonal, high_rows, high_columns}, frames, detail_steps, Orientation::kDiagonal);
+        out.levels.push_back(
+            {std::move(horizontal.integers), std::move(vertical.integers), std::move(diagonal.integers)});
+        if (!coding.in_frames) continue;
+        decoded.levels[0] = {std::move(horizontal.details), std::move(vertical.details), std::move(diagonal.details)};
+        copy_details(rim.view(), decoded.levels[0], decoded.columns);
+        decoded.base = restore<Irreversible97>(decoded, seams);
+    }
+    return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
+}
+
+void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,
+                const SeamTable* seams) {
+    if (from_step == 0) coder.code_base({pyramid.base.data(), pyramid.rows_at(0), pyramid.columns_at(0)});
+    for (uint32_t step = from_step; step < pyramid.steps() - to_level; ++step) {
+        const LevelBands bands = bands_of(pyramid, step);
+        const OwnSharedRim rim(seams, pyramid.columns_at(step + 1));
+        if (step == 0) {
+            coder.code_level(bands, nullptr, rim.view());
+        } else {
+            const LevelBands parents = bands_of(pyramid, step - 1);
+            coder.code_level(bands, &parents, rim.view());
+        }
+    }
+}
+
+std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count, CoefficientKind kind,
+                                             const SeamTable* seams) {
+    BandModels models(kind);
+    OwnBandWork work(pyramid.columns);
+    std::vector<std::vector<uint8_t>> streams;
+    uint32_t done = 0;
+    for (uint32_t level = level_count; level-- > 0;) {
+        RangeEncoder coder;
+        BandCoder<RangeEncoder> band_coder(&coder, &models, work.view());
+        code_steps(band_coder, pyramid, done, level, seams);
+        done = pyramid.steps() - level;
+        streams.push_back(coder.finish());
+    }
+    return streams;
+}
+
+}  // namespace gim

@@ -1,0 +1,23 @@
+// The encoder's view of its own output: a .gim file decoded through the public C interface into one mesh.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "encoder/surface/mesh.h"
+#include "gim/decoder.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// Header and index of a file of ours, of any size. Fails with the decoder's status text.
+Result<gim_info> read_own_info(std::span<const uint8_t> bytes);
+
+// All images of the file at one level, side by side in one mesh. Images whose seams cannot be closed at that level are decoded
+// at their coarsest one. Fails with the decoder's status text.
+Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level);
+
+// The coarsest level that every image of the file can close.
+Result<uint32_t> coarsest_level(std::span<const uint8_t> bytes);
+
+}  // namespace gim

@@ -1,0 +1,188 @@
+// Fitting a geometry image to its surface (fit.h).
+//
+// A round: split the cells; sample both surfaces by area and find the closest points; minimise over the displacements
+// dx
+//
+//     sum_o w |p - S(x + dx)|^2_W + sum_m w |S(x + dx) - q|^2_W + lambda sum_edges a/4 |T (x_i - x_j)|^2 + mu sum_v a_v
+//     |dx|^2
+//
+// with S(x) the sampled point of the image, p and q points of the reference, W = n n^T + tau (1 - n n^T); n is the face
+// normal where the closest point is inside a face, else the direction to it; T projects on the tangent plane and x_i,
+// x_j run over grid edges; then step as far as the guard allows: no face may turn further away from the reference's
+// normal once it is steep. lambda falls from round to round, and the number of samples rises. Where the start has folds,
+// the first rounds begin with unfolding: the samples around them are relaxed along the surface.
+//
+// Everything runs in a frame where the reference's bounding box has diagonal 1.
+#include "encoder/fit/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "encoder/base/parallel.h"
+#include "encoder/base/result.h"
+#include "encoder/fit/fitter.h"
+#include "encoder/image/gluing.h"
+#include "encoder/surface/creases.h"
+#include "encoder/surface/refine.h"
+#include "encoder/surface/surface_samples.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
+constexpr int kLastUnfoldings = 3;     // of a fit that has more folds than its start, before it is given up
+constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding may do harm
+constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost: half a decibel
+
+struct Schedule {
+    double first_lambda, last_lambda;
+    uint32_t rounds;
+    double first_density, last_density;  // samples of the reference per face of the image
+};
+
+// The stiff lambda is where files of 65 and 70 dB are smallest (bunny-closed, horse, gargoyle, rocker-arm: 0.03 to 0.05;
+// 0.08 costs about 1 % more, 0.3 costs 4 to 11 % more).
+Schedule schedule_of(const FitOptions& options) {
+    Schedule schedule = options.strength == FitOptions::Strength::kStiff ? Schedule{0.05, 0.05, 7, 1.5, 2}
+                                                                         : Schedule{0.02, 0.0003, 16, 1, 3.5};
+    if (options.thorough && options.strength == FitOptions::Strength::kLoose) schedule = {0.02, 0.0001, 32, 1, 3.5};
+    if (options.rounds > 0) schedule.rounds = options.rounds;
+    return schedule;
+}
+
+std::optional<Error> check_input(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
+                                 const std::vector<bool>& held) {
+    const auto fail = [](const char* message) { return Error{Stage::kFit, message}; };
+    if (gluing.width < 3 || gluing.height < 3 || start.size() != gluing.sample_count())
+        return fail("the image is not a rectangle of samples");
+    if (reference.triangles.empty()) return fail("the mesh to fit to has no triangles");
+    if (!held.empty() && held.size() != start.size())
+        return fail("the mask of held samples has another size than the image");
+    for (const Vec3& p : start) {
+        if (!p.allFinite()) return fail("the image has samples that are not finite");
+    }
+    return std::nullopt;
+}
+
+bool no_worse(const FitQuality& after, const FitQuality& before) {
+    return after.to_image <= before.to_image && after.to_reference <= before.to_reference &&
+           after.folds <= before.folds;
+}
+
+double distance(const FitQuality& quality) { return std::max(quality.to_image, quality.to_reference); }
+
+// The part of the surface within a mean sample spacing of creases.
+double crease_share(const Mesh& mesh, double samples) {
+    const double area = surface_area(mesh);
+    return area > 0 ? 2 * crease_length(mesh) / std::sqrt(area * samples) : 0;
+}
+
+// What the first rounds do besides.
+struct Plan {
+    uint32_t unfolding;  // so many rounds begin with unfolding
+    uint32_t unguarded;  // so many rounds may fold faces over: samples that are stuck in a bad place get out of it, and
+                         // the guarded rounds that follow unfold more than these have folded
+};
+
+void run_schedule(Fitter& fitter, const Schedule& schedule, const Plan& plan, uint64_t seed, const Progress& progress) {
+    for (uint32_t k = 0; k < schedule.rounds; ++k) {
+        if (progress) progress(Stage::kFit, static_cast<double>(k) / schedule.rounds);
+        const double t = schedule.rounds > 1 ? static_cast<double>(k) / (schedule.rounds - 1) : 1.0;
+        const double lambda = schedule.first_lambda * std::pow(schedule.last_lambda / schedule.first_lambda, t);
+        const double density = schedule.first_density + t * (schedule.last_density - schedule.first_density);
+        if (k < plan.unfolding) fitter.unfold();
+        fitter.round(lambda, density, mix_bits(seed) + 2 * k, k >= plan.unguarded);
+    }
+}
+
+Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& input,
+                    const FitOptions& options, const Progress& progress) {
+    const FitFrame frame(input);
+    const FitReference reference(Mesh{frame.into(input.positions), input.triangles});
+    const Fitter untouched(start, reference, gluing, frame, options);
+    const FitQuality before = untouched.quality();
+    const Schedule schedule = schedule_of(options);
+
+    // An image without folds is kept so from the first round on. Where unfolding costs accuracy, the folds stay.
+    std::vector<Plan> plans = {{0, 0}};
+    if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
+    // Samples that are relaxed along the surface leave its creases, and not all of them find back. Where that may matter,
+    // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
+    const bool compare = before.folds > 0 && !options.thorough &&
+                         (options.strength == FitOptions::Strength::kLoose ||
+                          crease_share(reference.mesh, static_cast<double>(gluing.defined_count())) > kCreased);
+    Fitted result;
+    result.positions = start;
+    FitQuality after = before;
+    for (size_t k = 0; k < plans.size(); ++k) {
+        Fitter fitter = untouched;
+        run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
+        result.rounds += schedule.rounds;
+        FitQuality reached = fitter.quality();
+        for (int again = 0; again < kLastUnfoldings && reached.folds > before.folds; ++again) {
+            fitter.unfold();
+            reached = fitter.quality();
+        }
+        if (!no_worse(reached, before)) continue;
+        if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
+            break;  // the unfolded one is better
+        after = reached;
+        for (uint32_t v = 0; v < start.size(); ++v) {
+            if (gluing.is_defined(v) && !fitter.held()[v]) result.positions[v] = frame.out_of(fitter.positions()[v]);
+        }
+        const bool compare_with_next = compare && k == 0 && !result.improved;
+        result.improved = true;
+        if (!compare_with_next) break;
+    }
+    const auto in_input_unit = [&](FitQuality quality) {
+        quality.to_image /= frame.scale;
+        quality.to_reference /= frame.scale;
+        return quality;
+    };
+    result.before = in_input_unit(before);
+    result.after = in_input_unit(after);
+    if (progress) progress(Stage::kFit, 1.0);
+    return result;
+}
+
+}  // namespace
+
+Result<Fitted> fit(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
+                   const FitOptions& options, const Progress& progress) {
+    if (auto bad = check_input(start, gluing, reference, options.held)) return *std::move(bad);
+    Fitted result;
+    with_threads(options.threads, [&] { result = fit_in_arena(start, gluing, reference, options, progress); });
+    return result;
+}
+
+Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
+                   const Progress& progress) {
+    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+    return fit(start.positions, gluing, reference, options, progress);
+}
+
+Result<FitQuality> measure_fit(const std::vector<Vec3>& positions, const GridGluing& gluing, const Mesh& reference,
+                               const std::vector<bool>& held, uint32_t threads) {
+    if (auto bad = check_input(positions, gluing, reference, held)) return *std::move(bad);
+    FitQuality quality;
+    with_threads(threads, [&] {
+        const FitFrame frame(reference);
+        const FitReference scaled(Mesh{frame.into(reference.positions), reference.triangles});
+        const std::vector<Vec3> points = frame.into(positions);
+        quality = measure(points, gluing, scaled, held.empty() ? std::vector<bool>(points.size(), false) : held,
+                          front_side(points, gluing, scaled));
+        quality.to_image /= frame.scale;
+        quality.to_reference /= frame.scale;
+    });
+    return quality;
+}
+
+Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held,
+                               uint32_t threads) {
+    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
+    return measure_fit(image.positions, gluing, reference, held, threads);
+}
+
+}  // namespace gim

@@ -1,0 +1,328 @@
+// A round: linearise the distances (fitter.h) around the samples; minimise over the change y of their coordinates in the
+// codec's own basis (detail_basis.h)
+//
+//     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
+//
+// with E the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, c the
+// coordinates now; then step as far as nothing folds over. The price is the quadratic that touches bits(c) =
+// kBits log2(1 + (c / (kNarrow step))^2) at c_i, times what a bit is worth: at high rates a further bit for each coefficient
+// of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
+//
+// The last rounds hold the tangential details at what the quantizer makes of them. So do some in between: what a coarse
+// quantizer leaves of the details is a better start than what nobody has quantized yet (8 rounds and 3 held ones: 6 to 8 %
+// more bytes than 16 and 5, two of these in between; still more rounds: 1 to 4 % less).
+#include "encoder/fit/fit_coded.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "encoder/base/parallel.h"
+#include "encoder/base/result.h"
+#include "encoder/code/code_bands.h"
+#include "encoder/fit/detail_basis.h"
+#include "encoder/fit/fitter.h"
+#include "encoder/surface/surface_samples.h"
+#include "format/fuse.h"
+#include "format/ring.h"
+#include "format/seam.h"
+#include "format/sideband_code.h"
+
+namespace gim {
+
+namespace {
+
+using Coordinates = DetailBasis::Coordinates;
+
+// Cycles, then the last rounds; free rounds first, then held ones.
+struct Schedule {
+    struct Part {
+        int free, held;
+    };
+    int cycles;
+    Part last;
+
+    int rounds() const;
+};
+constexpr Schedule::Part kCycle = {4, 1}, kLast = {6, 3};
+int Schedule::rounds() const { return cycles * (kCycle.free + kCycle.held) + last.free + last.held; }
+
+Schedule schedule_of(CodedFit::Effort effort) {
+    switch (effort) {
+        case CodedFit::Effort::kSearch:
+            return {1, {0, 0}};
+        case CodedFit::Effort::kAdjust:
+            return {0, kLast};
+        case CodedFit::Effort::kFinal:
+            break;
+    }
+    return {3, kLast};
+}
+
+constexpr double kDensity = 1.5;         // samples of the reference per face
+constexpr double kBits = 1;              // these two were measured on bunny, horse and feline (spec/rationale.md)
+constexpr double kNarrow = 0.3;          // of a step
+constexpr float kPullsPerSample = 2;     // both surfaces are sampled
+constexpr float kTangentialPull = 0.1f;  // how much distances hold samples along the surface; for preconditioning only
+constexpr float kLeastArea = 0.05f;      // likewise
+constexpr int kMostSteps = 40;
+constexpr double kTolerance = 1e-4;
+
+double dot(const Coordinates& a, const Coordinates& b) {
+    return parallel_sum(a.size(), 0, [&](size_t i) { return double{a[i]} * double{b[i]}; });
+}
+
+template <class Body>
+void for_all(size_t count, const Body& body) {
+    parallel_blocks(count, 16384, 0, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+// The mean over each class, in place; image: interleaved triples.
+void average_glued(const GridGluing& gluing, std::vector<float>& image) {
+    for (const auto& members : gluing.shared) {
+        for (size_t k = 0; k < 3; ++k) {
+            float sum = 0;
+            for (const uint32_t v : members) sum += image[3 * size_t{v} + k];
+            for (const uint32_t v : members) image[3 * size_t{v} + k] = sum / static_cast<float>(members.size());
+        }
+    }
+}
+
+// The energy of one round as a function of coordinates: P, S and the matrix of the distances in a row.
+class CoordinateSystem {
+  public:
+    CoordinateSystem(const FitSystem& system, const DetailBasis& basis, const GridGluing& gluing)
+        : system_(system), basis_(basis), gluing_(gluing) {
+        for (size_t k = 0; k < 3; ++k) {
+            in_[k].resize(system.right.size());
+            out_[k].resize(system.right.size());
+        }
+    }
+
+    std::vector<float> image_of(const Coordinates& y) const {
+        std::vector<float> image = basis_.synthesize(y);
+        average_glued(gluing_, image);
+        return image;
+    }
+    // scale: of the right side.
+    Coordinates right(float scale) const {
+        std::vector<float> image(3 * system_.right.size());
+        for (size_t i = 0; i < image.size(); ++i)
+            image[i] = scale * static_cast<float>(system_.right[i / 3][static_cast<int>(i % 3)]);
+        return coordinates_of(std::move(image));
+    }
+    Coordinates apply(const Coordinates& y) {
+        std::vector<float> image = image_of(y);
+        for_all(system_.right.size(), [&](size_t i) {
+            for (size_t k = 0; k < 3; ++k) in_[k][i] = image[3 * i + k];
+        });
+        system_.matrix.multiply(in_, out_);
+        for_all(system_.right.size(), [&](size_t i) {
+            for (size_t k = 0; k < 3; ++k) image[3 * i + k] = out_[k][i];
+        });
+        return coordinates_of(std::move(image));
+    }
+
+  private:
+    Coordinates coordinates_of(std::vector<float> image) const {
+        average_glued(gluing_, image);
+        return basis_.transposed(std::move(image));
+    }
+
+    const FitSystem& system_;
+    const DetailBasis& basis_;
+    const GridGluing& gluing_;
+    Planes in_, out_;
+};
+
+enum class Free { kAll, kNormals };
+
+// What each coordinate costs, and what it is about scaled by: price + curvature of the distances, inverted; 0 where held.
+struct Prices {
+    std::vector<float> price, inverse;
+
+    Prices(const DetailBasis& basis, const Coordinates& c, float quantizer, Free free)
+        : price(c.size()), inverse(c.size()) {
+        const auto ln2 = static_cast<float>(std::log(2.0));
+        const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;
+        for_all(c.size(), [&](size_t i) {
+            if ((free == Free::kNormals && DetailBasis::is_tangential(i)) || basis.is_copy(i)) return;
+            const float narrow = static_cast<float>(kNarrow) * basis.step(i);
+            if (i >= DetailBasis::kBase)
+                price[i] = bit * static_cast<float>(kBits) / ln2 / (c[i] * c[i] + narrow * narrow);
+            const float pull = DetailBasis::is_tangential(i) ? kTangentialPull : 1;
+            const float area = std::max(kLeastArea, basis.relative_area(i));
+            inverse[i] = 1 / (price[i] + basis.norm(i) * basis.norm(i) * kPullsPerSample * area * pull);
+        });
+    }
+};
+
+// Conjugate gradients; c: the coordinates now. Returns their change.
+Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coordinates& c, float scale) {
+    Coordinates y(c.size(), 0.0f), residual = system.right(scale), z(c.size());
+    const auto precondition = [&] { for_all(z.size(), [&](size_t i) { z[i] = prices.inverse[i] * residual[i]; }); };
+    for_all(c.size(),
+            [&](size_t i) { residual[i] = prices.inverse[i] > 0 ? residual[i] - prices.price[i] * c[i] : 0; });
+    precondition();
+    Coordinates direction = z;
+    double rz = dot(residual, z);
+    const double goal = kTolerance * rz;
+    for (int k = 0; k < kMostSteps && rz > goal; ++k) {
+        Coordinates image = system.apply(direction);
+        for_all(image.size(),
+                [&](size_t i) { image[i] = prices.inverse[i] > 0 ? image[i] + prices.price[i] * direction[i] : 0; });
+        const double curvature = dot(direction, image);
+        if (!(curvature > 0)) break;
+        const auto alpha = static_cast<float>(rz / curvature);
+        for_all(y.size(), [&](size_t i) {
+            y[i] += alpha * direction[i];
+            residual[i] -= alpha * image[i];
+        });
+        precondition();
+        const double before = rz;
+        rz = dot(residual, z);
+        const auto beta = static_cast<float>(rz / before);
+        for_all(y.size(), [&](size_t i) { direction[i] = z[i] + beta * direction[i]; });
+    }
+    return y;
+}
+
+// The image's sideband is in order (glue_ring has taken it).
+SeamTable seams_of(const GeometryImage& image) {
+    SeamTable seams;
+    (void)build_seam_table(with_coarsest_node_grid(image.sideband), &seams);
+    return seams;
+}
+
+std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
+    std::vector<uint32_t> classes(ring_length(side));
+    gim::ring_classes(seams, side, classes);
+    return classes;
+}
+
+}  // namespace
+
+struct CodedFit::Impl {
+    Impl(const GeometryImage& start, GridGluing glued, const Mesh& mesh, uint64_t first_seed)
+        : gluing(std::move(glued)),
+          frame(mesh),
+          reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
+          fitter(start.positions, reference, gluing, frame, {}),
+          first_positions(fitter.positions()),
+          side(start.side),
+          seams(seams_of(start)),
+          ring_classes(classes_of(seams, start.side)),
+          seed(first_seed) {}
+
+    GridGluing gluing;
+    FitFrame frame;
+    FitReference reference;
+    Fitter fitter;
+    std::vector<Vec3> first_positions;  // in the frame
+    uint32_t side;
+    SeamTable seams;  // as a file has them
+    std::vector<uint32_t> ring_classes;
+    uint64_t seed;
+    uint64_t rounds = 0;
+    std::vector<Vec3> cycled_positions;  // of the last final fit before its last rounds, in the frame
+    uint64_t cycled_rounds = 0;
+
+    void keep_as_cycled() {
+        cycled_positions = fitter.positions();
+        cycled_rounds = rounds;
+    }
+    void back_to_cycled() {
+        if (cycled_positions.empty()) return;
+        fitter.place(cycled_positions);
+        rounds = cycled_rounds;
+    }
+
+    // The samples as interleaved triples in units of the header, not rounded; and back.
+    std::vector<float> units(const Header& header) const {
+        std::vector<float> image(3 * fitter.positions().size());
+        for (size_t i = 0; i < fitter.positions().size(); ++i) {
+            const Vec3 position = frame.out_of(fitter.positions()[i]);
+            for (size_t k = 0; k < 3; ++k) {
+                const double from_origin = position[static_cast<int>(k)] - double{header.origin[k]};
+                image[3 * i + k] = static_cast<float>(from_origin / double{header.step});
+            }
+        }
+        return image;
+    }
+
+    void place_units(const std::vector<float>& image, const Header& header) {
+        std::vector<Vec3> positions(image.size() / 3);
+        for (size_t i = 0; i < image.size(); ++i) {
+            positions[i / 3][static_cast<int>(i % 3)] =
+                double{image[i]} * double{header.step} + double{header.origin[i % 3]};
+        }
+        fitter.place(frame.into(positions));
+    }
+
+    // One round of the head of this file. The membrane of other fits is left out: the price does its work.
+    void round(const Header& header, Free free) {
+        const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
+        const DetailCoding coding = detail_coding_of(header);
+        const std::vector<float> image = units(header);
+        const DetailBasis basis(image, side, coding, &seams);
+        const Coordinates c = basis.analyse(image);
+        const auto unit = static_cast<float>(double{header.step} * frame.scale);  // in the frame
+        CoordinateSystem coordinates(system, basis, gluing);
+        const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
+        const std::vector<float> change = coordinates.image_of(y);
+        std::vector<Vec3> step(fitter.positions().size());
+        for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
+        fitter.take_step(step, true);
+    }
+
+    // Samples go where a decoder would put them.
+    void quantize(const Header& header) {
+        Pyramid<float> bands = analyse<Irreversible97>(units(header), side, &seams);
+        subtract_middle(&bands, header.bits);
+        std::vector<float> image = quantize_bands(bands, detail_coding_of(header), &seams).image;
+        for (float& x : image) x += static_cast<float>(1 << (header.bits - 1));
+        const size_t ring = ring_classes.size();
+        const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
+        std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
+        std::vector<uint32_t> first(ring), members(ring);
+        fuse(side, ring_classes.data(), classes, image.data(),
+             {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
+        place_units(image, header);
+    }
+};
+
+CodedFit::CodedFit(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CodedFit::~CodedFit() = default;
+CodedFit::CodedFit(CodedFit&&) noexcept = default;
+CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
+
+Result<CodedFit> CodedFit::create(const GeometryImage& start, const Mesh& reference, uint64_t seed) {
+    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
+    return CodedFit(std::make_unique<Impl>(start, std::move(gluing), reference, seed));
+}
+
+void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
+
+std::vector<Vec3> CodedFit::run(const Header& header, Effort effort, const Progress& progress) {
+    const Schedule schedule = schedule_of(effort);
+    int done = 0;
+    const auto rounds = [&](const Schedule::Part& part) {
+        for (int k = 0; k < part.free + part.held; ++k) {
+            if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
+            const Free free = k < part.free ? Free::kAll : Free::kNormals;
+            if (free == Free::kNormals) impl_->quantize(header);
+            impl_->round(header, free);
+        }
+    };
+    if (effort == Effort::kAdjust) impl_->back_to_cycled();
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle);
+    if (effort == Effort::kFinal) impl_->keep_as_cycled();
+    rounds(schedule.last);
+    std::vector<Vec3> positions;
+    for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
+    return positions;
+}
+
+}  // namespace gim

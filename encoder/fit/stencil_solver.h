@@ -1,0 +1,74 @@
+// Symmetric positive definite systems on a grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
+// the eight neighbours, some samples glued into one unknown. Solved by conjugate gradients with a 3 x 3 block
+// Jacobi preconditioner; in floats, plane after plane, so that the loops over a row vectorise.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "encoder/image/gluing.h"
+#include "encoder/surface/mesh.h"
+
+namespace gim {
+
+// xx, xy, xz, yy, yz, zz.
+using SymmetricBlock = std::array<float, 6>;
+
+// One plane per component.
+using Planes = std::array<std::vector<float>, 3>;
+
+class StencilMatrix {
+  public:
+    StencilMatrix(uint32_t width, uint32_t height) : width_(width), height_(height) {
+        for (auto& planes : block_) {
+            for (auto& plane : planes) plane.assign(size_t{width} * height, 0.0f);
+        }
+    }
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+
+    // Adds a block between two samples that are neighbours (or one and the same).
+    void add(uint32_t i, uint32_t j, const SymmetricBlock& block, float factor) {
+        if (i > j) std::swap(i, j);
+        const uint32_t offset = j - i;
+        const size_t kind = offset == 0        ? kDiagonal
+                            : offset == 1      ? kEast
+                            : offset == width_ ? kSouth
+                            : offset > width_  ? kSouthEast
+                                               : kSouthWest;
+        for (size_t k = 0; k < 6; ++k) block_[kind][k][i] += factor * block[k];
+    }
+
+    // out = matrix * in, each sample an unknown of its own. In parallel.
+    void multiply(const Planes& in, Planes& out) const;
+
+    enum Kind : size_t { kDiagonal, kEast, kSouth, kSouthEast, kSouthWest, kKinds };
+    const float* plane(Kind kind, size_t k) const { return block_[kind][k].data(); }
+
+  private:
+    void accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift, const Planes& in,
+                    Planes& out) const;
+
+    uint32_t width_, height_;
+    std::array<std::array<std::vector<float>, 6>, kKinds> block_;
+};
+
+struct SolverOptions {
+    uint32_t most_steps = 60;
+    double tolerance = 1e-3;  // of the residual, relative to the right side's
+};
+
+struct Solution {
+    std::vector<Vec3> values;  // per sample; equal within a class
+    uint32_t steps = 0;
+};
+
+// `right`: per sample; the right side of a glued unknown is the sum over its class. `fixed` samples keep the value
+// zero, as do undefined ones. At least three columns. The same bits for any number of threads.
+Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const GridGluing& gluing,
+               const std::vector<bool>& fixed, const SolverOptions& options);
+
+}  // namespace gim

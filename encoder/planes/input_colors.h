@@ -1,0 +1,36 @@
+// The colour of any point of the input's surface: textures and corner colours, found by the closest triangle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "encoder/surface/closest_point.h"
+#include "encoder/surface/mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// Empty when the arrays fit the mesh and each other.
+std::string appearance_complaint(const TriangleMesh& mesh);
+
+class InputColors {
+  public:
+    // Keeps a reference to the mesh, whose appearance is sound and not empty. Degenerate triangles are left out: they have no
+    // surface, and cleaning may have moved what lies next to them. O(F log F).
+    explicit InputColors(const TriangleMesh& mesh, uint32_t threads = 0);
+
+    // sRGB, 0..255, of surface points: one triple per point. Textures bilinear. O(points log F).
+    std::vector<float> at(std::span<const Vec3> points) const;
+
+  private:
+    std::array<float, 3> color(const ClosestPoint& at) const;
+
+    const TriangleMesh& mesh_;
+    std::vector<uint32_t> source_;  // of the tree's triangles: that of the mesh
+    ClosestPointTree tree_;
+    uint32_t threads_;
+};
+
+}  // namespace gim

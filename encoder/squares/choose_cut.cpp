@@ -1,0 +1,85 @@
+#include "encoder/squares/choose_cut.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "encoder/code/rate_control.h"
+#include "encoder/squares/coding_trial.h"
+
+namespace gim {
+
+namespace {
+
+constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}, {0.6, 0, 2}};
+
+struct Candidate {
+    CutPreference preference;
+    std::optional<CutSurface> cut;
+    std::optional<SingleChart> chart;
+    double log_bytes = std::numeric_limits<double>::infinity();
+};
+
+template <class T, class Body>
+void for_each_at_once(std::vector<T>& all, const Body& body) {
+    tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { body(all[i]); });
+}
+
+// Different cuts only.
+std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
+    const CuttableSurface surface = make_cuttable(mesh, options.side);
+    std::vector<Candidate> attempts;
+    for (const CutPreference& preference : kPreferences) attempts.push_back({preference, {}, {}});
+    for_each_at_once(attempts, [&](Candidate& attempt) {
+        auto cut = cut_open(surface, options, attempt.preference);
+        if (cut.ok()) attempt.cut = std::move(cut.value());
+    });
+    std::vector<Candidate> candidates;
+    for (Candidate& attempt : attempts) {
+        if (!attempt.cut) continue;
+        const bool is_known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+            return other.cut->cut_length == attempt.cut->cut_length &&
+                   other.cut->boundary.sideband == attempt.cut->boundary.sideband;
+        });
+        if (!is_known) candidates.push_back(std::move(attempt));
+    }
+    return candidates;
+}
+
+}  // namespace
+
+bool may_choose_chart(const EncodeOptions& options) {
+    return is_searched(options.rate) && options.fit == FitStrength::kAuto;
+}
+
+std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+    clock.begin(Stage::kCut);
+    std::vector<Candidate> candidates = cut_in_several_ways(mesh, options);
+
+    clock.begin(Stage::kParametrize);
+    for_each_at_once(candidates, [&](Candidate& candidate) {
+        StageClock unheard({});
+        auto chart = map_and_sample(*candidate.cut, mesh, options, unheard);
+        if (chart.ok()) candidate.chart = std::move(chart.value());
+    });
+    std::erase_if(candidates, [](const Candidate& candidate) { return !candidate.chart; });
+    if (candidates.empty()) return {};
+
+    if (candidates.size() > 1) {
+        clock.begin(Stage::kFit);
+        const CodingTrial trial(mesh, options, candidates[0].chart->image);
+        for_each_at_once(candidates, [&](Candidate& candidate) {
+            const auto log_bytes = trial.log_bytes(candidate.chart->image);
+            if (log_bytes.ok()) candidate.log_bytes = log_bytes.value();
+        });
+    }
+    const auto best =
+        std::min_element(candidates.begin(), candidates.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.log_bytes < b.log_bytes; });
+    return ChosenChart{std::move(*best->chart), best->preference};
+}
+
+}  // namespace gim

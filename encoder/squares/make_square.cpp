@@ -1,0 +1,122 @@
+#include "encoder/squares/make_square.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "encoder/base/result.h"
+#include "encoder/fit/fit_strength.h"
+#include "encoder/image/density.h"
+#include "encoder/image/snapshot.h"
+#include "encoder/squares/augment_cut.h"
+#include "encoder/squares/boundary_map.h"
+#include "encoder/squares/circle_map.h"
+#include "encoder/squares/parametrize.h"
+#include "encoder/squares/sample_square.h"
+#include "encoder/surface/refine.h"
+#include "encoder/surface/stretch.h"
+
+namespace gim {
+
+namespace {
+
+// Faces larger than this part of the surface are split before cutting: about 8 samples of the image, but neither so few faces
+// that the cut has no choice, nor so many that they cost more time than they are worth.
+double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
+
+std::string percent(double part) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f%%", 100 * part);
+    return text;
+}
+
+// The search for the cut, state by state.
+void show_cut_search(const FoundCut& found, const Observer& observer) {
+    const Topology topology = build_topology(found.searched);
+    uint32_t number = 0;
+    for (size_t i = 0; i < found.steps.size(); ++i) {
+        const AugmentStep& step = found.steps[i];
+        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut) continue;  // only judged by the next
+        const auto opened = open_mesh(found.searched, topology, step.cut);
+        if (!opened.ok()) continue;
+        char name[32];
+        std::snprintf(name, sizeof name, "cut-%02u", number++);
+        const std::string reached = step.efficiency > 0 ? "stretch efficiency " + percent(step.efficiency) : "start";
+        observer(make_snapshot(name, reached, opened.value(), circle_map(opened.value())));
+    }
+}
+
+}  // namespace
+
+CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side) {
+    Mesh fine = refine_large_faces(mesh, largest_face(side) * surface_area(mesh));
+    Topology topology = build_topology(fine);
+    CoarseSurface coarse = coarsen(fine, kSearchVertices);
+    return {std::move(fine), std::move(topology), std::move(coarse)};
+}
+
+Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions& options,
+                            const CutPreference& preference, const Progress& progress, const Observer& observer) {
+    AugmentOptions search;
+    search.boundary = {options.side, options.node_side, preference.most_excess, preference.least_units};
+    search.path_cost = preference.path_cost;
+    GIM_TRY(found, find_cut(surface.mesh, surface.topology, surface.coarse, search, progress));
+    GIM_TRY(opened, open_mesh(surface.mesh, surface.topology, found.cut));
+    if (observer) show_cut_search(found, observer);
+    GIM_TRY(boundary, map_boundary(std::move(opened), search.boundary));
+    return CutSurface{std::move(boundary), cut_length(surface.mesh, surface.topology, found.cut)};
+}
+
+Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
+                                   StageClock& clock, const Observer& observer) {
+    SingleChart chart;
+    chart.cut_length = cut.cut_length;
+
+    clock.begin(Stage::kParametrize);
+    const Mesh& disk = cut.boundary.opened.mesh;
+    const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
+    GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, {}, clock.progress()));
+    std::vector<Vec2> uv = std::move(even);
+    chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
+    if (observer) {
+        observer(
+            make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
+    }
+    if (options.density) {
+        ParametrizeOptions weighted;
+        const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
+        weighted.importance = importance_from_error(disk, uv, sample_surface(cut.boundary, uv, options.side),
+                                                    lossless ? DensityOptions{} : kCodedDensity);
+        GIM_TRY(adapted, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
+        uv = std::move(adapted);
+        if (observer) observer(make_snapshot("map-density", "denser where it errs", cut.boundary.opened, uv));
+    }
+    chart.flipped_triangles = count_flipped(disk, uv);
+
+    clock.begin(Stage::kSample);
+    chart.image = sample_surface(cut.boundary, uv, options.side);
+    if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
+    const auto strength = fit_strength(options);
+    if (!strength) return chart;
+
+    clock.begin(Stage::kFit);
+    FitOptions fit_options;
+    fit_options.strength = *strength;
+    fit_options.seed = options.seed;
+    fit_options.threads = options.threads;
+    GIM_TRY(fitted, fit(chart.image, mesh, fit_options, clock.progress()));
+    chart.image.positions = std::move(fitted.positions);
+    chart.folds = fitted.after.folds;
+    chart.folds_before_fit = fitted.before.folds;
+    if (observer) observer(make_snapshot("image-fitted", "fitted", chart.image));
+    return chart;
+}
+
+Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
+                                        StageClock& clock, const Observer& observer) {
+    clock.begin(Stage::kCut);
+    GIM_TRY(cut, cut_open(make_cuttable(mesh, options.side), options, preference, clock.progress(), observer));
+    return map_and_sample(cut, mesh, options, clock, observer);
+}
+
+}  // namespace gim

@@ -1,0 +1,168 @@
+#include "encoder/squares/parametrize.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "encoder/base/result.h"
+#include "encoder/surface/progressive_mesh.h"
+#include "encoder/surface/stretch.h"
+#include "encoder/surface/tutte.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kBaseInterior = 60;  // interior vertices of the base mesh, when collapses allow it
+constexpr int kBaseSweeps = 200;        // the base mesh is solved to convergence
+constexpr double kLeastArea = 1e-3;     // smallest weight of a face, in mean face areas
+
+bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
+    std::vector<uint8_t> fixed(uv.size(), 1);
+    std::vector<std::array<uint32_t, 2>> arcs;
+    for (uint32_t v = 0; v < uv.size(); ++v) {
+        if (mesh.removed(v) || mesh.on_boundary(v)) continue;
+        fixed[v] = 0;
+        mesh.for_each_neighbour(v, [&](uint32_t w) { arcs.push_back({v, w}); });
+    }
+    return solve_tutte(arcs, fixed, uv);
+}
+
+// The map being optimised on a mesh that is refined step by step.
+class Optimiser {
+  public:
+    Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const std::vector<double>& importance,
+              std::vector<Vec2>& uv)
+        : mesh_(mesh), positions_(positions), importance_(importance), uv_(uv), metric_(mesh.half_edge_count() / 3) {
+        double area = 0;
+        for (uint32_t f = 0; f < metric_.size(); ++f) {
+            if (mesh_.alive(f)) area += 2 * metric_of(f, 0).weight;
+        }
+        least_area_ = kLeastArea * area / static_cast<double>(metric_.size());
+        for (uint32_t f = 0; f < metric_.size(); ++f) {
+            if (mesh_.alive(f)) metric_[f] = metric_of(f, least_area_);
+        }
+    }
+
+    // One pass over all interior vertices. Returns the energy's sum over stars before and after as (before, after).
+    double sweep(int steps) {
+        double gain = 0, total = 0;
+        for (uint32_t v = 0; v < uv_.size(); ++v) {
+            if (mesh_.removed(v) || mesh_.on_boundary(v)) continue;
+            load_star(v);
+            const double before = star_energy_at(uv_[v]);
+            const double after = minimise_star(star_, uv_[v], steps);
+            if (std::isfinite(before)) gain += before - after, total += after;
+        }
+        return total > 0 ? 3 * gain / total : 0;  // every triangle is in up to three stars
+    }
+
+    void sweep_until(int most, double tolerance) {
+        for (int i = 0; i < most; ++i) {
+            if (sweep(1) < tolerance) break;
+        }
+    }
+
+    // Puts a vertex that came back inside its star and relaxes its surroundings. False when no place keeps all faces
+    // upright.
+    bool insert(const VertexSplit& split) {
+        mesh_.for_each_outgoing(split.vertex,
+                                [&](uint32_t h) { metric_[face_of(h)] = metric_of(face_of(h), least_area_); });
+        load_star(split.vertex);
+        Vec2 x = Vec2::Zero();
+        for (const StarTriangle& t : star_) x += t.p1;
+        x /= static_cast<double>(star_.size());
+        if (!std::isfinite(star_energy_at(x)) && !find_kernel_point(star_, x)) return false;
+        minimise_star(star_, x, 4);
+        uv_[split.vertex] = x;
+        for (const uint32_t v : {split.into, split.left, split.right, split.vertex}) relax(v, 2);
+        return true;
+    }
+
+    void relax(uint32_t v, int steps) {
+        if (mesh_.on_boundary(v)) return;
+        load_star(v);
+        minimise_star(star_, uv_[v], steps);
+    }
+
+  private:
+    FaceMetric metric_of(uint32_t f, double least_area) const {
+        const uint32_t a = mesh_.origin(3 * f), b = mesh_.origin(3 * f + 1), c = mesh_.origin(3 * f + 2);
+        FaceMetric metric = face_metric(positions_[a], positions_[b], positions_[c], least_area);
+        if (!importance_.empty()) metric.weight *= (importance_[a] + importance_[b] + importance_[c]) / 3;
+        return metric;
+    }
+    void load_star(uint32_t v) {
+        star_.clear();
+        mesh_.for_each_outgoing(v, [&](uint32_t h) {
+            const FaceMetric& m = metric_[face_of(h)];
+            const uint32_t i = h % 3;
+            star_.push_back({uv_[mesh_.target(h)],
+                             uv_[mesh_.origin(prev(h))],
+                             {m.squared_length[i], m.squared_length[(i + 1) % 3], m.squared_length[(i + 2) % 3]},
+                             m.weight});
+        });
+    }
+    double star_energy_at(const Vec2& x) const {
+        double energy = 0;
+        for (const StarTriangle& t : star_) energy += stretch_energy({t.squared_length, t.weight}, x, t.p1, t.p2);
+        return energy;
+    }
+
+    ProgressiveMesh& mesh_;
+    const std::vector<Vec3>& positions_;
+    const std::vector<double>& importance_;
+    std::vector<Vec2>& uv_;
+    std::vector<FaceMetric> metric_;
+    std::vector<StarTriangle> star_;
+    double least_area_ = 0;
+};
+
+Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        if (twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0) continue;
+        const Vec3& p = mesh.positions[t[0]];
+        return {Stage::kParametrize,
+                std::to_string(count_flipped(mesh, uv)) + " triangles could not be kept upright, the first near (" +
+                    std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " + std::to_string(p.z()) +
+                    "); remove slivers there, or simplify the mesh a little"};
+    }
+    return {Stage::kParametrize, "no triangle is flipped"};
+}
+
+}  // namespace
+
+uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
+    return static_cast<uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        return !(twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0);
+    }));
+}
+
+Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
+                                      const ParametrizeOptions& options, const Progress& progress) {
+    ProgressiveMesh hierarchy(mesh);
+    uint32_t boundary = 0;
+    for (const uint8_t s : sides) boundary += s != 0;
+    simplify(hierarchy, mesh.positions, {boundary + kBaseInterior, true, sides});
+    if (!tutte_map(hierarchy, uv)) return Error{Stage::kParametrize, "the base map could not be solved"};
+
+    Optimiser optimiser(hierarchy, mesh.positions, options.importance, uv);
+    optimiser.sweep_until(kBaseSweeps, options.tolerance);
+    const auto total = static_cast<double>(hierarchy.collapse_count());
+    double sweep_at = options.growth * (hierarchy.vertex_count() - boundary);
+    while (hierarchy.coarsened()) {
+        if (!optimiser.insert(hierarchy.split())) return flipped_error(mesh, uv);
+        if (hierarchy.vertex_count() - boundary < sweep_at) continue;
+        sweep_at *= options.growth;
+        optimiser.sweep_until(options.sweeps, options.tolerance);
+        if (progress) progress(Stage::kParametrize, 1 - static_cast<double>(hierarchy.collapse_count()) / total);
+    }
+    optimiser.sweep_until(options.final_sweeps, options.tolerance);
+    if (count_flipped(mesh, uv) != 0) return flipped_error(mesh, uv);
+    return uv;
+}
+
+}  // namespace gim

@@ -1,0 +1,98 @@
+#include "encoder/squares/square_images.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "encoder/squares/choose_cut.h"
+#include "encoder/squares/make_square.h"
+#include "encoder/surface/refine.h"
+#include "encoder/surface/topology_summary.h"
+
+namespace gim {
+
+namespace {
+
+// Samples of a component's image per side: as dense as the largest component's image, to a power of two.
+uint32_t side_of_component(double area, double largest, uint32_t side) {
+    constexpr int kLeastExponent = 4;
+    const int most = std::countr_zero(side - 1);
+    const double halvings = area > 0 ? 0.5 * std::log2(largest / area) : most;
+    const int exponent = most - static_cast<int>(std::lround(std::min(halvings, double(most))));
+    return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
+}
+
+// A component whose cut needs more room than its area deserves gets it.
+Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
+                                     const CutPreference& preference, StageClock& clock, const Observer& observer) {
+    for (;; options.side = 2 * (options.side - 1) + 1) {
+        options.node_side = std::min(options.node_side, options.side);
+        auto chart = make_geometry_image(mesh, options, preference, clock, observer);
+        if (chart.ok() || options.side >= most) return chart;
+    }
+}
+
+// One component's. preference: known, or to be chosen and told.
+Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
+                               const Observer& observer, std::optional<CutPreference>& preference) {
+    if (!preference && may_choose_chart(options) && options.side == most) {
+        if (auto choice = choose_chart(mesh, options, clock)) {
+            preference = choice->preference;
+            if (!observer) return std::move(choice->chart);
+        }
+    }
+    if (!preference) preference = CutPreference{};
+    return make_roomy_image(mesh, options, most, *preference, clock, observer);
+}
+
+void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& report) {
+    report.cut_length += chart.cut_length;
+    report.stretch_efficiency += part_of_area * chart.stretch_efficiency;
+    report.flipped_triangles += chart.flipped_triangles;
+    report.folds += chart.folds;
+    report.folds_before_fit += chart.folds_before_fit;
+}
+
+}  // namespace
+
+Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                        const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
+    const Components components = connected_components(mesh.triangles, mesh.positions.size());
+    std::vector<Mesh> parts;
+    std::vector<double> areas;
+    for (uint32_t k = 0; k < components.count; ++k) {
+        parts.push_back(extract_component(mesh, components, k));
+        areas.push_back(surface_area(parts.back()));
+    }
+    const double largest = *std::max_element(areas.begin(), areas.end());
+    const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+    std::vector<GeometryImage> images;
+    preferences.resize(parts.size());
+    for (size_t k = 0; k < parts.size(); ++k) {
+        const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
+        const Observer with_prefix = [&](const Snapshot& state) {
+            Snapshot named = state;
+            named.name = prefix + state.name;
+            observer(named);
+        };
+        EncodeOptions part_options = options;
+        part_options.side = side_of_component(areas[k], largest, options.side);
+        auto chart = make_chart(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
+                                preferences[k]);
+        if (!chart.ok() && parts.size() == 1) return chart.error();
+        if (!chart.ok()) {
+            return Error{chart.error().stage, "component " + std::to_string(k) + " of " + std::to_string(parts.size()) +
+                                                  " (" + std::to_string(parts[k].triangles.size()) +
+                                                  " triangles): " + chart.error().message};
+        }
+        add_to_report(chart.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
+        images.push_back(std::move(chart.value().image));
+    }
+    return SquareImages{std::move(images), std::move(parts)};
+}
+
+}  // namespace gim

@@ -1,0 +1,63 @@
+#include "encoder/surface/shading_normals.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace gim {
+
+namespace {
+
+Vec3 unit_or_zero(const Vec3& v) {
+    const double length = v.stableNorm();
+    return length > 0 ? Vec3(v / length) : Vec3::Zero();
+}
+
+// Twice the area long.
+Vec3 area_vector(const Mesh& mesh, const Triangle& t) {
+    return (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+}
+
+// Per vertex the first one at its position.
+std::vector<uint32_t> first_at_position(const Mesh& mesh) {
+    std::vector<uint32_t> order(mesh.positions.size()), first(mesh.positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto place = [&](uint32_t v) {
+        const Vec3& p = mesh.positions[v];
+        return std::array{p[0], p[1], p[2]};
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        const auto at_a = place(a), at_b = place(b);
+        return at_a != at_b ? at_a < at_b : a < b;
+    });
+    for (size_t i = 0; i < order.size(); ++i) {
+        const bool repeats = i > 0 && place(order[i]) == place(order[i - 1]);
+        first[order[i]] = repeats ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+}  // namespace
+
+std::vector<Vec3> shading_normals(const Mesh& mesh) {
+    const std::vector<uint32_t> first = first_at_position(mesh);
+    std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 area = area_vector(mesh, t);
+        for (const uint32_t v : t) normals[first[v]] += area;
+    }
+    for (size_t v = 0; v < normals.size(); ++v) {
+        if (first[v] == v) normals[v] = unit_or_zero(normals[v]);
+    }
+    for (size_t v = 0; v < normals.size(); ++v) normals[v] = normals[first[v]];
+    return normals;
+}
+
+Vec3 shading_normal_at(const Mesh& mesh, const std::vector<Vec3>& normals, uint32_t triangle,
+                       const std::array<double, 3>& barycentric) {
+    const Triangle& t = mesh.triangles[triangle];
+    const Vec3 sum = barycentric[0] * normals[t[0]] + barycentric[1] * normals[t[1]] + barycentric[2] * normals[t[2]];
+    const Vec3 normal = unit_or_zero(sum);
+    return normal.isZero() ? unit_or_zero(area_vector(mesh, t)) : normal;
+}
+
+}  // namespace gim

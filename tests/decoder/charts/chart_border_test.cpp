@@ -1,0 +1,311 @@
+// Borders and zippers through the coder and back, and against a second writer of the same bits.
+#include "format/chart_border.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+#include "decoder/range_decoder.h"
+#include "encoder/code/range_encoder.h"
+#include "format/chart_table.h"
+#include "tests/format/random_sideband.h"
+#include "tests/format/raw_chart_table.h"
+
+namespace gim {
+namespace {
+
+using test::Random;
+using Bytes = std::vector<uint8_t>;
+using Glued = std::vector<std::pair<uint32_t, uint32_t>>;
+
+struct Walk {
+    uint32_t columns = 2, rows = 2;
+    std::vector<uint32_t> samples;
+    std::string directions;
+};
+
+// A closed walk without turning back: an octagon whose long sides zigzag here and there, in a box with some room.
+Walk random_walk(Random& random) {
+    std::array<uint32_t, 4> counts{};
+    while (std::count(counts.begin(), counts.end(), 0u) > 2) {
+        for (uint32_t& n : counts) n = random.below(3) == 0 ? 0 : random.below(9);
+    }
+    Walk walk;
+    for (uint32_t d = 0; d < 8; ++d) {
+        const uint32_t n = counts[d % 4];
+        for (uint32_t k = 0; k < n; ++k) {
+            const bool zigzag = d % 2 == 0 && k > 0 && k + 2 < n && random.below(3) == 0;
+            walk.directions += static_cast<char>('0' + (zigzag ? (d + 1) % 8 : d));
+            if (zigzag) walk.directions += static_cast<char>('0' + (d + 7) % 8), ++k;
+        }
+    }
+    std::rotate(walk.directions.begin(),
+                walk.directions.begin() + random.below(static_cast<uint32_t>(walk.directions.size())),
+                walk.directions.end());
+    int32_t column = 0, row = 0;
+    std::vector<std::array<int32_t, 2>> points;
+    std::array<int32_t, 2> low{}, high{};
+    for (const char c : walk.directions) {
+        points.push_back({column, row});
+        low = {std::min(low[0], column), std::min(low[1], row)};
+        high = {std::max(high[0], column), std::max(high[1], row)};
+        column += kDirections[static_cast<size_t>(c - '0')][0];
+        row += kDirections[static_cast<size_t>(c - '0')][1];
+    }
+    EXPECT_TRUE(column == 0 && row == 0);
+    walk.columns = static_cast<uint32_t>(high[0] - low[0]) + 1 + random.below(3);
+    walk.rows = static_cast<uint32_t>(high[1] - low[1]) + 1 + random.below(3);
+    walk.columns = std::max(walk.columns, 2u);
+    walk.rows = std::max(walk.rows, 2u);
+    for (const auto& p : points)
+        walk.samples.push_back(static_cast<uint32_t>(p[1] - low[1]) * walk.columns +
+                               static_cast<uint32_t>(p[0] - low[0]));
+    return walk;
+}
+
+// Charts with their paths; zippers per second path, as in a file.
+struct Level {
+    std::vector<Walk> walks;
+    std::vector<uint32_t> path_counts;
+    std::vector<BorderPath> paths;
+    std::vector<std::vector<ZipStep>> zippers;
+};
+
+Level random_level(Random& random) {
+    Level level;
+    const uint32_t charts = 1 + random.below(5);
+    for (uint32_t c = 0; c < charts; ++c) {
+        level.walks.push_back(random_walk(random));
+        const auto length = static_cast<uint32_t>(level.walks[c].samples.size());
+        const uint32_t count = 1 + random.below(std::min(length, 5u));
+        level.path_counts.push_back(count);
+        uint32_t left = length;
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t most = left - (count - 1 - k);
+            const uint32_t n = k + 1 == count ? left : 1 + random.below(most);
+            level.paths.push_back({kUnmated, n, 0, c});
+            left -= n;
+        }
+    }
+    for (uint32_t p = 0; p < level.paths.size(); ++p) {
+        const uint32_t q = random.below(static_cast<uint32_t>(level.paths.size()));
+        if (q >= p || level.paths[p].mate != kUnmated || level.paths[q].mate != kUnmated) continue;
+        level.paths[p].mate = q;
+        level.paths[q].mate = p;
+    }
+    for (uint32_t p = 0; p < level.paths.size(); ++p) {
+        if (level.paths[p].mate >= p) continue;
+        std::vector<ZipStep> steps;
+        uint32_t a = level.paths[level.paths[p].mate].length, b = level.paths[p].length;
+        while (a > 0 || b > 0) {
+            const auto step = a == 0   ? ZipStep::kSecond
+                              : b == 0 ? ZipStep::kFirst
+                                       : static_cast<ZipStep>(random.below(2) * random.below(3));
+            a -= step != ZipStep::kSecond;
+            b -= step != ZipStep::kFirst;
+            steps.push_back(step);
+        }
+        level.zippers.push_back(steps);
+    }
+    return level;
+}
+
+// Both directions; a decoder fills in the level, and in `glued` what its zippers say. False where the bytes are refused.
+template <class Coder>
+bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
+    BorderCoder<Coder> border_coder(&coder, &models);
+    uint32_t first_path = 0;
+    size_t zipper = 0;
+    for (size_t c = 0; c < level.walks.size(); ++c) {
+        Walk& walk = level.walks[c];
+        BorderChart chart;
+        chart.columns = walk.columns;
+        chart.rows = walk.rows;
+        chart.first_path = first_path;
+        chart.path_count = level.path_counts[c];
+        chart.border_length = static_cast<uint32_t>(walk.samples.size());
+        // Exactly as much room as was promised: sanitizers see one sample too far.
+        std::vector<uint32_t> samples(size_t{walk.columns} * walk.rows);
+        std::copy_n(walk.samples.begin(), std::min(walk.samples.size(), samples.size()), samples.begin());
+        chart.samples = samples.data();
+        if (!border_coder.code_border(chart, level.paths.data())) return false;
+        walk.samples.assign(samples.begin(), samples.begin() + std::min<size_t>(chart.border_length, samples.size()));
+        for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
+            if (level.paths[p].mate >= p) continue;
+            std::vector<ZipStep> none;
+            auto step = Coder::kWrites ? level.zippers[zipper].begin() : none.begin();
+            if (!border_coder.code_zipper(
+                    level.paths[level.paths[p].mate], level.paths[p], [&] { return *step++; },
+                    [&](uint32_t i, uint32_t j) {
+                        if (glued) glued->push_back({i, j});
+                    }))
+                return false;
+            ++zipper;
+        }
+        first_path += chart.path_count;
+    }
+    return true;
+}
+
+// What a decoder knows beforehand.
+Level without_borders(Level level) {
+    for (Walk& walk : level.walks) walk.samples.clear();
+    for (BorderPath& path : level.paths) path = {path.mate, 0, 0, path.chart};
+    return level;
+}
+
+Bytes encoded(Level level, Glued* glued) {
+    RangeEncoder encoder;
+    BorderModels models;
+    EXPECT_TRUE(code(encoder, models, level, glued));
+    return encoder.finish();
+}
+
+TEST(ChartBorder, RandomBordersAndZippersComeBack) {
+    Random random(1);
+    for (int round = 0; round < 300; ++round) {
+        const Level level = random_level(random);
+        Glued written, read;
+        const Bytes bytes = encoded(level, &written);
+        Level back = without_borders(level);
+        RangeDecoder decoder(bytes);
+        BorderModels models;
+        ASSERT_TRUE(code(decoder, models, back, &read)) << round;
+        EXPECT_TRUE(decoder.intact());
+        for (size_t c = 0; c < level.walks.size(); ++c) ASSERT_EQ(back.walks[c].samples, level.walks[c].samples);
+        for (size_t p = 0; p < level.paths.size(); ++p) ASSERT_EQ(back.paths[p].length, level.paths[p].length);
+        ASSERT_EQ(read, written);
+    }
+}
+
+TEST(ChartBorder, BytesAreThoseOfTheText) {
+    Random random(2);
+    for (int round = 0; round < 100; ++round) {
+        const Level level = random_level(random);
+        RangeEncoder encoder;
+        test::RawBorderWriter writer(&encoder);
+        uint32_t p = 0;
+        size_t zipper = 0;
+        for (size_t c = 0; c < level.walks.size(); ++c) {
+            const Walk& walk = level.walks[c];
+            const uint32_t first = p;
+            writer.begin_chart(walk.columns, walk.rows, walk.samples[0] % walk.columns, walk.samples[0] / walk.columns);
+            size_t done = 0;
+            for (; p < first + level.path_counts[c]; ++p) {
+                const BorderPath& path = level.paths[p];
+                if (path.mate < p) {
+                    writer.length_of_second(path.length, level.paths[path.mate].length);
+                } else {
+                    writer.length(path.length);
+                }
+                writer.steps(walk.directions.substr(done, path.length));
+                done += path.length;
+            }
+            for (uint32_t q = first; q < p; ++q) {
+                if (level.paths[q].mate >= q) continue;
+                std::string steps;
+                for (const ZipStep step : level.zippers[zipper])
+                    steps += static_cast<char>('0' + static_cast<int>(step));
+                writer.zipper(level.paths[level.paths[q].mate].length, level.paths[q].length, steps);
+                ++zipper;
+            }
+        }
+        ASSERT_EQ(encoder.finish(), encoded(level, nullptr)) << round;
+    }
+}
+
+TEST(ChartBorder, DamagedStreamsStayInBounds) {
+    Random random(3);
+    for (int round = 0; round < 60; ++round) {
+        const Level level = random_level(random);
+        const Bytes whole = encoded(level, nullptr);
+        const auto check = [&](const Bytes& bytes) {
+            Level back = without_borders(level);
+            RangeDecoder decoder(bytes);
+            BorderModels models;
+            Glued glued;
+            if (!code(decoder, models, back, &glued)) return;
+            for (const Walk& walk : back.walks) {
+                ASSERT_GE(walk.samples.size(), 3u);
+                for (const uint32_t i : walk.samples) ASSERT_LT(i, walk.columns * walk.rows);
+            }
+        };
+        for (size_t n = 0; n < whole.size(); ++n) check({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(n)});
+        for (size_t bit = 0; bit < whole.size() * 8; ++bit) {
+            Bytes bytes = whole;
+            bytes[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+            check(bytes);
+        }
+    }
+    for (int round = 0; round < 300; ++round) {
+        const Level level = random_level(random);
+        Bytes noise(random.below(80));
+        for (uint8_t& b : noise) b = static_cast<uint8_t>(random.below(256));
+        Level back = without_borders(level);
+        RangeDecoder decoder(noise);
+        BorderModels models;
+        (void)code(decoder, models, back, nullptr);
+    }
+}
+
+// A box of 4 x 3, one path or two.
+bool accepted(const std::function<void(test::RawBorderWriter&)>& write, std::vector<uint32_t> mates = {kUnmated}) {
+    RangeEncoder encoder;
+    test::RawBorderWriter writer(&encoder);
+    write(writer);
+    const Bytes bytes = encoder.finish();
+    Level level;
+    level.walks = {{4, 3, {}, ""}};
+    level.path_counts = {static_cast<uint32_t>(mates.size())};
+    for (const uint32_t mate : mates) level.paths.push_back({mate, 0, 0, 0});
+    RangeDecoder decoder(bytes);
+    BorderModels models;
+    return code(decoder, models, level, nullptr) && decoder.intact();
+}
+
+TEST(ChartBorder, WhatIsNoBorderIsRefused) {
+    using Writer = test::RawBorderWriter;
+    const auto walk = [](uint32_t column, uint32_t row, const std::string& directions) {
+        return [=](Writer& w) {
+            w.begin_chart(4, 3, column, row);
+            w.length(static_cast<uint32_t>(directions.size()));
+            w.steps(directions);
+        };
+    };
+    EXPECT_TRUE(accepted(walk(0, 0, "0002244466")));
+    EXPECT_FALSE(accepted(walk(0, 0, "035")));               // ends elsewhere
+    EXPECT_TRUE(accepted(walk(1, 1, "036")));                // three samples
+    EXPECT_FALSE(accepted(walk(0, 3, "036")));               // begins outside the box
+    EXPECT_FALSE(accepted(walk(1, 1, "0002244466")));        // leaves it on the right,
+    EXPECT_FALSE(accepted(walk(0, 1, "0002244466")));        // at the high end,
+    EXPECT_FALSE(accepted(walk(0, 0, "6000224442")));        // at the low end,
+    EXPECT_FALSE(accepted(walk(1, 0, "0244440660")));        // on the left
+    EXPECT_FALSE(accepted(walk(0, 0, "000224446")));         // not closed
+    EXPECT_TRUE(accepted(walk(0, 0, "024602460246")));       // as long as the box has samples: no matter to the walk
+    EXPECT_FALSE(accepted(walk(0, 0, "0246024602460246")));  // longer
+    const auto two = [](uint32_t first, uint32_t coded) {
+        return [=](Writer& w) {
+            w.begin_chart(4, 3, 0, 0);
+            w.length(first);
+            w.steps(std::string("0002244466").substr(0, first));
+            w.number_of_second(coded);
+            w.steps(std::string("0002244466").substr(std::min(first, 10u)));
+            w.zipper(5, 5, "00000");
+        };
+    };
+    EXPECT_TRUE(accepted(two(5, 0), {1, 0}));
+    EXPECT_FALSE(accepted(two(5, 10), {1, 0}));              // 5 - 5
+    EXPECT_FALSE(accepted(two(5, 12), {1, 0}));              // 5 - 6
+    EXPECT_FALSE(accepted(two(5, 5), {1, 0}));               // 5 + 3: one more than the box has samples
+    EXPECT_FALSE(accepted(two(5, (1u << 25) - 2), {1, 0}));  // the greatest number
+    EXPECT_FALSE(accepted(two(5, (1u << 25) - 1), {1, 0}));  // one more
+    EXPECT_FALSE(accepted([](Writer& w) {
+        w.begin_chart(4, 3, 0, 0);
+        w.length((1u << 25) - 1);
+    }));
+}
+
+}  // namespace
+}  // namespace gim

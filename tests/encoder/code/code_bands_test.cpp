@@ -1,0 +1,145 @@
+#include "encoder/code/code_bands.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "encoder/squares/write_squares.h"
+#include "gim/decoder.h"
+#include "tests/encoder/grid_images.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kSide = 129;
+
+// A sheet with waves, more of them on one side; nothing is glued, so that decoders fuse nothing.
+GeometryImage waves() {
+    return image_of(kSide, open_sideband(), [](double u, double v) {
+        return Vec3(u + 0.1 * u * u, v + 0.05 * std::sin(5 * u), 0.1 * std::sin(17 * u * u) * std::cos(9 * v));
+    });
+}
+
+CodingParameters lossy(double quantizer) {
+    CodingParameters parameters;
+    parameters.lossless = false;
+    parameters.quantizer = quantizer;
+    return parameters;
+}
+
+SeamTable seams_of(const GeometryImage& image) {
+    SeamTable seams;
+    EXPECT_EQ(build_seam_table(image.sideband, &seams), Status::kOk);
+    return seams;
+}
+
+Pyramid<float> pyramid_of(const GeometryImage& image, const Header& header) {
+    const SeamTable seams = seams_of(image);
+    Pyramid<float> pyramid = analyse<Irreversible97>(to_units<float>(image.positions, header), image.side, &seams);
+    subtract_middle(&pyramid, header.bits);
+    return pyramid;
+}
+
+std::vector<float> decoded_units(const std::vector<uint8_t>& bytes) {
+    gim_info info;
+    gim_level_info level;
+    EXPECT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
+    EXPECT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, 0, &level), GIM_OK);
+    std::vector<float> positions(3 * size_t{kSide} * kSide);
+    std::vector<uint8_t> scratch(level.scratch_size);
+    EXPECT_EQ(
+        gim_decode_positions(&info, bytes.data(), bytes.size(), 0, 0, positions.data(), scratch.data(), scratch.size()),
+        GIM_OK);
+    for (size_t i = 0; i < positions.size(); ++i)
+        positions[i] = static_cast<float>((double{positions[i]} - double{info.origin[i % 3]}) / double{info.step});
+    return positions;
+}
+
+TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
+    for (const GeometryImage& image : {waves(), torus_image(kSide, 700, 300)})
+        for (const double quantizer : {1.0, 8.0, 60.0, 500.0}) {
+            const SeamTable seams = seams_of(image);
+            const GimWriter writer = GimWriter::create({&image, 1}, lossy(quantizer)).value();
+            const Header header = writer.header(quantizer);
+            ASSERT_GT(header.tangential, 0);
+            ASSERT_GT(header.cell_area, 1);
+            const std::vector<float> expected =
+                quantize_bands(pyramid_of(image, header), detail_coding_of(header), &seams).image;
+            const std::vector<float> decoded = decoded_units(writer.write(quantizer));
+            const float middle = static_cast<float>(1 << (header.bits - 1));
+            ASSERT_EQ(expected.size(), decoded.size());
+            // A decoder's values are rounded around 2^(bits-1), not 0, which turns frames by some 1e-5.
+            for (size_t i = 0; i < decoded.size(); ++i)
+                ASSERT_NEAR(expected[i] + middle, decoded[i], 0.02f) << quantizer;
+        }
+}
+
+TEST(CodeBands, FineSteppedDetailsComeBackThroughTheirFrames) {
+    const GeometryImage image = waves();
+    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(0.125);
+    const Pyramid<float> pyramid = pyramid_of(image, header);
+    const SeamTable seams = seams_of(image);
+    const std::vector<float> before = restore<Irreversible97>(pyramid, &seams),
+                             after = quantize_bands(pyramid, detail_coding_of(header), &seams).image;
+    double squares = 0;
+    for (size_t i = 0; i < before.size(); ++i) squares += std::pow(double{before[i]} - after[i], 2);
+    EXPECT_LT(std::sqrt(squares / double(before.size())), 0.125);
+}
+
+TEST(CodeBands, WithoutFramesNoImageIsMade) {
+    const GeometryImage image = waves();
+    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(8);
+    const Pyramid<float> pyramid = pyramid_of(image, header);
+    const QuantizedImage plain = quantize_bands(pyramid, {8}), framed = quantize_bands(pyramid, {8, true, 3, 1});
+    EXPECT_TRUE(plain.image.empty());
+    EXPECT_EQ(framed.image.size(), 3 * size_t{kSide} * kSide);
+    EXPECT_EQ(plain.bands.base, framed.bands.base);
+    EXPECT_NE(plain.bands.levels.back().horizontal, framed.bands.levels.back().horizontal);
+}
+
+TEST(CodeBands, WiderTangentialStepsKeepLessOfTheTangentialDetail) {
+    const GeometryImage image = waves();
+    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(8);
+    const Pyramid<float> pyramid = pyramid_of(image, header);
+    const auto sum = [&](float tangential, bool normal) {
+        const QuantizedImage quantized = quantize_bands(pyramid, {8, true, tangential, 1});
+        uint64_t all = 0;
+        for (const auto& level : quantized.bands.levels) {
+            for (const auto* band : {&level.horizontal, &level.vertical, &level.diagonal}) {
+                for (size_t i = 0; i < band->size(); ++i) {
+                    if ((i % 3 == 0) == normal) all += magnitude_of((*band)[i]);
+                }
+            }
+        }
+        return double(all);
+    };
+    EXPECT_LT(sum(4, false), 0.4 * sum(1, false));
+    EXPECT_NEAR(sum(4, true) / sum(1, true), 1, 0.1);
+}
+
+TEST(CodeBands, CellAreaIsTheMeanOfTheCells) {
+    // Cells of 3 x 2 object units, and 1 x 2 where the mask leaves them out.
+    std::vector<Vec3> positions;
+    std::vector<uint8_t> defined;
+    for (uint32_t row = 0; row < 5; ++row) {
+        for (uint32_t column = 0; column < 9; ++column) {
+            positions.emplace_back(column < 5 ? 3.0 * column : 12.0 + column - 4, 2.0 * row, 0);
+            defined.push_back(column < 5);
+        }
+    }
+    Header header;
+    header.step = 0.5f;
+    CellArea area;
+    area.add(positions, defined, 9, 5);
+    area.set_details(&header);
+    EXPECT_EQ(header.tangential, 8 * kTangentialRatio);
+    EXPECT_EQ(cell_area_of(header.cell_area), 24.0f);  // 6 / 0.5^2
+    CellArea all;
+    all.add(positions, {}, 9, 5);
+    all.set_details(&header);
+    EXPECT_EQ(cell_area_of(header.cell_area), 16.0f);
+}
+
+}  // namespace
+}  // namespace gim

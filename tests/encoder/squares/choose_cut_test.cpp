@@ -1,0 +1,59 @@
+#include "encoder/squares/choose_cut.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "corpus/generators.h"
+#include "encoder/squares/coding_trial.h"
+#include "encoder/surface/clean.h"
+
+namespace gim {
+namespace {
+
+EncodeOptions options_for(RateTarget rate) {
+    EncodeOptions options;
+    options.side = 33;
+    options.node_side = 5;
+    options.rate = rate;
+    return options;
+}
+
+Mesh blob() { return clean(corpus::limbed_blob(24)).value().mesh; }
+
+TEST(ChooseChart, TheChosenImageCostsNoMoreThanTheUsualOne) {
+    const Mesh mesh = blob();
+    for (const RateTarget rate : {RateTarget{RateTarget::Kind::kPsnr, 40}, RateTarget{RateTarget::Kind::kBytes, 700}}) {
+        const EncodeOptions options = options_for(rate);
+        ASSERT_TRUE(may_choose_chart(options));
+        StageClock clock({});
+        const auto chosen = choose_chart(mesh, options, clock);
+        ASSERT_TRUE(chosen);
+        const SingleChart usual = make_geometry_image(mesh, options, {}, clock).value();
+        const CodingTrial trial(mesh, options, usual.image);
+        EXPECT_LE(trial.log_bytes(chosen->chart.image).value(), trial.log_bytes(usual.image).value());
+        const SingleChart again = make_geometry_image(mesh, options, chosen->preference, clock).value();
+        EXPECT_EQ(again.image.positions, chosen->chart.image.positions);
+    }
+}
+
+TEST(ChooseChart, SameChoiceOnOneThread) {
+    const Mesh mesh = blob();
+    const EncodeOptions options = options_for({RateTarget::Kind::kPsnr, 40});
+    StageClock clock({});
+    const auto many = choose_chart(mesh, options, clock);
+    tbb::task_arena one(1);
+    const auto single = one.execute([&] { return choose_chart(mesh, options, clock); });
+    EXPECT_EQ(many->preference, single->preference);
+    EXPECT_EQ(many->chart.image.positions, single->chart.image.positions);
+}
+
+TEST(ChooseChart, IsForTargetsThatAFitCanMeet) {
+    EXPECT_FALSE(may_choose_chart(options_for({RateTarget::Kind::kLossless, 0})));
+    EXPECT_FALSE(may_choose_chart(options_for({RateTarget::Kind::kQuality, 50})));
+    EncodeOptions plain = options_for({RateTarget::Kind::kPsnr, 40});
+    plain.fit = FitStrength::kOff;
+    EXPECT_FALSE(may_choose_chart(plain));
+}
+
+}  // namespace
+}  // namespace gim

@@ -1,0 +1,85 @@
+#include "encoder/squares/parametrize.h"
+
+#include <gtest/gtest.h>
+
+#include "encoder/squares/boundary_map.h"
+#include "encoder/squares/cut.h"
+#include "encoder/squares/sample_square.h"
+#include "encoder/surface/stretch.h"
+#include "tests/encoder/stage_meshes.h"
+
+namespace gim {
+namespace {
+
+SquareBoundary laid_out(const Mesh& mesh, uint32_t side) {
+    const Topology topology = build_topology(mesh);
+    const CutEdges cut = straighten_cut(mesh, topology, initial_cut(mesh, topology, 0));
+    return map_boundary(open_mesh(mesh, topology, cut).value(), {side, 17}).value();
+}
+
+TEST(Parametrize, NoTriangleIsFlippedOnAnySurface) {
+    for (const NamedMesh& m : connected_meshes()) {
+        const SquareBoundary boundary = laid_out(m.mesh, 257);
+        const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, 257), {});
+        ASSERT_TRUE(uv.ok()) << m.name << ": " << uv.error().message;
+        EXPECT_EQ(count_flipped(boundary.opened.mesh, uv.value()), 0u) << m.name;
+        // Together the triangles cover the square exactly once.
+        double area = 0;
+        for (const Triangle& t : boundary.opened.mesh.triangles) {
+            area += 0.5 * twice_signed_area(uv.value()[t[0]], uv.value()[t[1]], uv.value()[t[2]]);
+        }
+        EXPECT_NEAR(area, 1, 1e-9) << m.name;
+    }
+}
+
+TEST(Parametrize, FlatSquareComesBackAlmostIsometric) {
+    const Mesh mesh = clean(corpus::terrain(40)).value().mesh;
+    Mesh flat = mesh;
+    for (Vec3& p : flat.positions) p.z() = 0;
+    const SquareBoundary boundary = laid_out(flat, 257);
+    const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, 257), {});
+    ASSERT_TRUE(uv.ok());
+    EXPECT_GT(stretch_efficiency(boundary.opened.mesh, uv.value(), 1), 0.93);  // its corners need not meet the square's
+}
+
+TEST(Parametrize, BoundaryStaysWhereItWasPut) {
+    const Mesh mesh = clean(corpus::torus(30, 15, 1, 0.4)).value().mesh;
+    const SquareBoundary boundary = laid_out(mesh, 257);
+    const std::vector<Vec2> start = boundary_uv(boundary, 257);
+    const auto uv = parametrize(boundary.opened.mesh, boundary.sides, start, {});
+    ASSERT_TRUE(uv.ok());
+    for (const uint32_t v : boundary.opened.loop) EXPECT_EQ(uv.value()[v], start[v]);
+}
+
+TEST(Sample, EveryGridPointIsOnTheSurfaceAndMatesAreBitEqual) {
+    for (const NamedMesh& m : connected_meshes()) {
+        const uint32_t side = 257;
+        const SquareBoundary boundary = laid_out(m.mesh, side);
+        const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, side), {});
+        ASSERT_TRUE(uv.ok()) << m.name;
+        for (const SurfacePoint& p : locate_samples(boundary.opened.mesh, uv.value(), side)) {
+            ASSERT_NE(p.triangle, kNone) << m.name;
+            for (const double w : p.barycentric) EXPECT_GT(w, -1e-6) << m.name;
+        }
+        const GeometryImage image = sample_surface(boundary, uv.value(), side);
+        const auto ring = [&](uint32_t p) {
+            const Vec2 at = ring_point(p % (4 * (side - 1)), side) * (side - 1);
+            return image.at(static_cast<uint32_t>(at.y()), static_cast<uint32_t>(at.x()));
+        };
+        const uint32_t scale = (side - 1) / (image.sideband.node_side - 1);
+        std::vector<uint32_t> begins;
+        uint32_t begin = image.sideband.start * scale;
+        for (const CutPath& path : image.sideband.paths) begins.push_back(begin), begin += path.length * scale;
+        for (size_t k = 0; k < begins.size(); ++k) {
+            const CutPath& path = image.sideband.paths[k];
+            if (path.mate == kNoMate) continue;
+            const uint32_t mate_begin = begins[static_cast<size_t>(path.mate)], length = path.length * scale;
+            for (uint32_t t = 0; t <= length; ++t) {
+                ASSERT_EQ(ring(begins[k] + t), ring(mate_begin + length - t)) << m.name << " path " << k;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gim

@@ -1,0 +1,58 @@
+#include "encoder/surface/shading_normals.h"
+
+#include <gtest/gtest.h>
+
+#include "corpus/generators.h"
+
+namespace gim {
+namespace {
+
+Mesh as_mesh(const TriangleMesh& input) {
+    Mesh mesh;
+    for (const auto& p : input.positions) mesh.positions.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles = input.triangles;
+    return mesh;
+}
+
+TEST(ShadingNormals, OfASpherePointAwayFromItsCentre) {
+    const Mesh mesh = as_mesh(corpus::sphere(24));
+    const std::vector<Vec3> normals = shading_normals(mesh);
+    for (size_t v = 0; v < normals.size(); ++v) EXPECT_GT(normals[v].dot(mesh.positions[v].normalized()), 0.998) << v;
+}
+
+TEST(ShadingNormals, VerticesAtOnePositionShareOne) {
+    const TriangleMesh sphere = corpus::sphere(5);
+    const Mesh whole = as_mesh(sphere), apart = as_mesh(corpus::soup(sphere));
+    const std::vector<Vec3> expected = shading_normals(whole), normals = shading_normals(apart);
+    for (size_t f = 0; f < whole.triangles.size(); ++f) {
+        for (size_t k = 0; k < 3; ++k) {
+            EXPECT_LT((normals[apart.triangles[f][k]] - expected[whole.triangles[f][k]]).norm(), 1e-12);
+        }
+    }
+}
+
+TEST(ShadingNormals, PositiveAndNegativeZeroAreOnePosition) {
+    const Mesh mesh{{{0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}};
+    const std::vector<Vec3> normals = shading_normals(mesh);
+    EXPECT_EQ(normals[0], normals[3]);
+    EXPECT_NE(normals[1], normals[5]);
+}
+
+TEST(ShadingNormals, InsideATriangleTheyAreInterpolatedAndOfUnitLength) {
+    const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    const std::vector<Vec3> normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    EXPECT_LT((shading_normal_at(mesh, normals, 0, {0.5, 0.5, 0}) - Vec3(1, 1, 0).normalized()).norm(), 1e-15);
+    EXPECT_LT((shading_normal_at(mesh, normals, 0, {0, 0, 1}) - Vec3(0, 0, 1)).norm(), 1e-15);
+}
+
+TEST(ShadingNormals, WhereTheyCancelTheTriangleDecides) {
+    const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}, {0, 0, 1}}};  // both sides, and no area
+    const std::vector<Vec3> normals = shading_normals(mesh);
+    for (const Vec3& n : normals) EXPECT_TRUE(n.isZero());
+    EXPECT_EQ(shading_normal_at(mesh, normals, 0, {0.2, 0.3, 0.5}), Vec3(0, 0, 1));
+    EXPECT_EQ(shading_normal_at(mesh, normals, 1, {0.2, 0.3, 0.5}), Vec3(0, 0, -1));
+    EXPECT_TRUE(shading_normal_at(mesh, normals, 2, {0.2, 0.3, 0.5}).isZero());
+}
+
+}  // namespace
+}  // namespace gim
