@@ -64,18 +64,22 @@ struct Chunk {
     uint16_t crc = 0;       // of the stored payload
 };
 
+// What a file counts positions and details in. A position is origin + step * unit.
+struct Units {
+    uint32_t bits = 12;             // of a coordinate along the largest extent of the bounding box
+    std::array<float, 3> origin{};  // object space
+    float step = 1;                 // object units per unit
+    float quantizer = 0;            // kLossy only, as the next two: step of a coefficient of unit norm, in units
+    uint8_t tangential = 0;  // step of tangential components over that of normal ones, in eighths; 0: details are
+                             // not in frames
+    uint8_t cell_area = 0;   // code of the area that steps refer to (cell_area_of)
+};
+
 // Header fields as stored; `side_exponents` and `index` point into the parsed bytes.
-struct Header {
+struct Header : Units {
     FileLayout layout = FileLayout::kSquares;
     Coding coding = Coding::kLossless;
-    uint32_t bits = 12;
     uint32_t level_count = 0;
-    std::array<float, 3> origin{};
-    float step = 1;
-    float quantizer = 0;                      // kLossy only, as the next two
-    uint8_t tangential = 0;                   // step of tangential components over that of normal ones, in eighths;
-                                              // 0: details are not in frames
-    uint8_t cell_area = 0;                    // code of the area that steps refer to (cell_area_of)
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
     std::span<const uint8_t> level_psnr;      // empty, or per level, coarsest first: half decibels, 0: not known

@@ -43,13 +43,13 @@ struct DetailCoding {
 };
 
 // That of the positions of a lossy file.
-inline DetailCoding detail_coding_of(const Header& header) {
-    return {header.quantizer, header.tangential > 0, static_cast<float>(header.tangential) / 8,
-            cell_area_of(header.cell_area)};
+inline DetailCoding detail_coding_of(const Units& units) {
+    return {units.quantizer, units.tangential > 0, static_cast<float>(units.tangential) / 8,
+            cell_area_of(units.cell_area)};
 }
 
-inline CoefficientKind coefficient_kind_of(const Header& header) {
-    return header.tangential > 0 ? CoefficientKind::kInFrames : CoefficientKind::kPlain;
+inline CoefficientKind coefficient_kind_of(const Units& units) {
+    return units.tangential > 0 ? CoefficientKind::kInFrames : CoefficientKind::kPlain;
 }
 
 struct DetailFrame {

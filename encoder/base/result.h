@@ -15,4 +15,8 @@ namespace gim {
     if (!name##_result.ok()) return name##_result.error(); \
     auto& name = name##_result.value()
 
+// Returns the error of a Result<void>, or goes on.
+#define GIM_CHECK(expression) \
+    if (auto checked_result = (expression); !checked_result.ok()) return checked_result.error()
+
 }  // namespace gim

@@ -110,7 +110,6 @@ struct Placement {
 Result<LevelBorders> borders_of(const MultiChartImage& image, const std::vector<Placement>& places) {
     GIM_TRY(paths, path_samples(image.mask, image.seams));
     GIM_TRY(point, glue_samples(image.mask, image.seams));
-    GIM_TRY(surface, reconstruct(image));
     LevelBorders borders;
     size_t next = 0;
     for (size_t c = 0; c < places.size(); ++c) {
@@ -126,7 +125,7 @@ Result<LevelBorders> borders_of(const MultiChartImage& image, const std::vector<
         }
     }
     borders.zippers = image.seams.zippers;
-    borders.size.triangles = static_cast<uint32_t>(surface.mesh.triangles.size());
+    borders.size.triangles = static_cast<uint32_t>(surface_of(image).mesh.triangles.size());
     for (uint32_t i = 0; i < point.size(); ++i) borders.size.vertices += point[i] == i;
     return borders;
 }
@@ -149,9 +148,7 @@ std::optional<LevelBorders> zip_level(const Atlas& atlas, const std::vector<Char
     }
     auto zipped = zip(sample_charts(atlas.charts, atlas.maps, packing, threads), atlas.charts, atlas.maps, packing);
     if (!zipped.ok()) return std::nullopt;
-    auto surface = reconstruct(zipped.value());
-    if (!surface.ok()) return std::nullopt;
-    const Mesh& mesh = surface.value().mesh;
+    const Mesh mesh = surface_of(zipped.value()).mesh;
     if (!same_topology(wanted, analyse_topology(mesh.triangles, mesh.positions.size()).summary)) return std::nullopt;
     auto borders = borders_of(zipped.value(), places);
     if (!borders.ok()) return std::nullopt;
@@ -160,7 +157,7 @@ std::optional<LevelBorders> zip_level(const Atlas& atlas, const std::vector<Char
 
 }  // namespace
 
-uint64_t ChartImages::defined_count() const {
+uint64_t ChartLevels::defined_count() const {
     uint64_t count = 0;
     for (const auto& chart : defined)
         count += static_cast<uint64_t>(std::count(chart.begin(), chart.end(), uint8_t{1}));
@@ -175,7 +172,7 @@ bool same_topology(const TopologySummary& a, const TopologySummary& b) {
 namespace {
 
 // With coarse samples that lie within `band` of a border taken in.
-Result<ChartImages> make_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
+Result<ChartLevels> make_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
                                 const TopologySummary& wanted, uint32_t most_levels, double band, uint32_t threads) {
     GIM_TRY(paths, path_samples(image.mask, image.seams));
     const size_t count = atlas.charts.size();
@@ -198,7 +195,7 @@ Result<ChartImages> make_images(const MultiChartImage& image, const Atlas& atlas
         if (most_levels <= 1 || samples <= kMostBoxes * image.mask.defined.size()) break;
     }
 
-    ChartImages result;
+    ChartLevels result;
     result.image = image;
     for (const SeamPath& path : image.seams.paths) result.mates.push_back(path.mate);
     std::vector<Placement> places;
@@ -244,7 +241,7 @@ Result<ChartImages> make_images(const MultiChartImage& image, const Atlas& atlas
 
 }  // namespace
 
-Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
+Result<ChartLevels> make_chart_levels(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
                                       const TopologySummary& wanted, uint32_t most_levels, uint32_t threads) {
     // A level whose samples happen to lie badly for its zippers often does well with a few more or fewer.
     constexpr size_t kEnoughLevels = 4;

@@ -26,7 +26,7 @@ struct LevelBorders {
     LevelSize size;
 };
 
-struct ChartImages {
+struct ChartLevels {
     MultiChartImage image;  // the charts in their rectangle
     std::vector<ChartBox> charts;
     std::vector<uint32_t> mates;                // per path, chart after chart
@@ -40,7 +40,7 @@ struct ChartImages {
 
 // In:  the finished image, what it was made from, and the topology that every level must have.
 // Out: as many levels as have it, `most_levels` at most. Fails when not even the finest has.
-Result<ChartImages> make_chart_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
+Result<ChartLevels> make_chart_levels(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
                                       const TopologySummary& wanted, uint32_t most_levels, uint32_t threads);
 
 bool same_topology(const TopologySummary& a, const TopologySummary& b);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "encoder/base/parallel.h"
+#include "encoder/charts/glue_charts.h"
 #include "encoder/surface/stretch.h"
 
 namespace gim {
@@ -79,6 +80,7 @@ MultiChartImage sample_charts(const std::vector<Chart>& charts, const std::vecto
             }
         }
     }
+    image.gluing = glue_nothing(image.mask);
     parallel_blocks(charts.size(), 1, threads, [&](size_t, size_t begin, size_t end) {
         for (size_t c = begin; c < end; ++c) sample_chart(charts[c], maps[c], packing.charts[c], image);
     });

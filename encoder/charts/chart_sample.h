@@ -15,7 +15,7 @@
 
 namespace gim {
 
-// The image without seams. In: charts, their maps and where they are packed. O(samples + faces + border samples * border
+// The image without seams, every chart by itself. In: charts, their maps and where they are packed. O(samples + faces + border samples * border
 // edges).
 MultiChartImage sample_charts(const std::vector<Chart>& charts, const std::vector<ChartMap>& maps,
                               const Packing& packing, uint32_t threads = 0);

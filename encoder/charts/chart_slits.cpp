@@ -104,15 +104,12 @@ uint32_t nearest_face(const Chart& chart, const Vec3& point) {
 std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& packing, const Mesh& surface,
                                    Atlas& atlas) {
     constexpr double kLongEdge = 4, kOffSurface = 1;  // in spacings
-    const auto point = glue_samples(image.mask, image.seams);
-    if (!point.ok()) return {};
     const std::vector<uint32_t> owner = owners_of(packing);
     const double spacing = std::sqrt(surface_area(surface) / static_cast<double>(image.mask.count()));
     const ClosestPointTree tree(surface);
     std::vector<double> worst(atlas.charts.size(), 0.0);
     std::vector<uint32_t> bridged;
-    for (const CellTriangle& triangle : triangles_of(image, point.value())) {
-        const Triangle& t = triangle.corners;
+    const auto look_at = [&](const Triangle& t) {
         size_t longest = 0;
         double length = 0;
         for (size_t k = 0; k < 3; ++k) {
@@ -120,15 +117,19 @@ std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& 
             if (here > length) length = here, longest = k;
         }
         const uint32_t c = owner[t[0]];
-        if (length <= std::max(kLongEdge * spacing, worst[c])) continue;
+        if (length <= std::max(kLongEdge * spacing, worst[c])) return;
         const Vec3 &a = image.positions[t[longest]], &b = image.positions[t[(longest + 1) % 3]];
-        if (tree.find(0.5 * (a + b)).squared_distance <= kOffSurface * kOffSurface * spacing * spacing) continue;
+        if (tree.find(0.5 * (a + b)).squared_distance <= kOffSurface * kOffSurface * spacing * spacing) return;
         const Chart& chart = atlas.charts[c];
         const uint32_t first = nearest_face(chart, a), second = nearest_face(chart, b);
-        if (first == second) continue;
+        if (first == second) return;
         if (worst[c] == 0) bridged.push_back(c);
         worst[c] = length;
         atlas.maps[c].crossing = {first, second};
+    };
+    for (uint32_t cell = 0; cell < image.gluing.kind.size(); ++cell) {
+        const CellTriangles all = cell_triangles(image.positions, image.gluing, cell);
+        for (uint32_t k = 0; k < all.count; ++k) look_at(all.triangles[k]);
     }
     std::sort(bridged.begin(), bridged.end());
     return bridged;

@@ -7,7 +7,7 @@
 #include <queue>
 #include <set>
 
-#include "encoder/squares/cut.h"
+#include "encoder/surface/edge_paths.h"
 #include "encoder/surface/surface_samples.h"
 
 namespace gim {

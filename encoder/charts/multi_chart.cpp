@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "encoder/base/result.h"
+#include "encoder/charts/adapt_charts.h"
 #include "encoder/charts/atlas.h"
 #include "encoder/charts/chart_sample.h"
 #include "encoder/charts/chart_slits.h"
 #include "encoder/charts/inflate.h"
 #include "encoder/charts/pack.h"
 #include "encoder/charts/zipper.h"
-#include "encoder/image/density.h"
 #include "encoder/surface/creases.h"
 #include "encoder/surface/refine.h"
 
@@ -142,14 +142,13 @@ Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOpti
         fit_options.thorough = true;
         fit_options.seed = options.seed;
         fit_options.threads = options.threads;
-        GIM_TRY(gluing, glue_charts(result.image.mask, result.image.seams));
-        GIM_TRY(fitted, fit(result.image.positions, gluing, mesh, fit_options, clock.progress()));
+        GIM_TRY(fitted, fit(result.image, mesh, fit_options, clock.progress()));
         result.sampled = std::exchange(result.image.positions, std::move(fitted.positions));
         result.before_fit = fitted.before;
         result.after_fit = fitted.after;
     }
-    GIM_TRY(surface, reconstruct(result.image));
-    const TopologySummary found = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size()).summary;
+    const Mesh surface = surface_of(result.image).mesh;
+    const TopologySummary found = analyse_topology(surface.triangles, surface.positions.size()).summary;
     if (!same_topology(wanted, found))
         return Error{Stage::kSample, "the image's surface has another topology than the mesh; ask for more samples"};
     return result;

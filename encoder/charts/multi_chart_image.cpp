@@ -106,74 +106,12 @@ std::vector<CellKind> classify_cells(const SampleMask& mask, const std::vector<u
                        : !third  ? CellKind::kNoThird
                                  : CellKind::kNoFourth;
             } else if (count == 4) {
-                const Split split = chart_split(grid, row, column);
-                kind = split == Split::kShorter ? CellKind::kShorter
-                       : split == Split::kMain  ? CellKind::kMain
-                                                : CellKind::kAnti;
+                kind = kind_of(chart_split(grid, row, column));
             }
             kinds.push_back(kind);
         }
     }
     return kinds;
-}
-
-CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main) {
-    const uint32_t a = first, b = first + 1, c = first + width + 1, d = first + width;
-    switch (kind) {
-        case CellKind::kEmpty:
-            return {};
-        case CellKind::kNoFirst:
-            return {{{{b, c, d}, {}}}, 1};
-        case CellKind::kNoSecond:
-            return {{{{a, c, d}, {}}}, 1};
-        case CellKind::kNoThird:
-            return {{{{a, b, d}, {}}}, 1};
-        case CellKind::kNoFourth:
-            return {{{{a, b, c}, {}}}, 1};
-        default:
-            break;
-    }
-    if (kind == CellKind::kMain || (kind == CellKind::kShorter && main)) return {{{{a, b, c}, {a, c, d}}}, 2};
-    return {{{{a, b, d}, {b, c, d}}}, 2};
-}
-
-std::vector<CellTriangle> triangles_of(const MultiChartImage& image, const std::vector<uint32_t>& point) {
-    const auto squared_distance = [&](uint32_t a, uint32_t b) {
-        return (image.positions[point[a]] - image.positions[point[b]]).squaredNorm();
-    };
-    const uint32_t width = image.width();
-    const std::vector<CellKind> kinds = classify_cells(image.mask, point);
-    std::vector<CellTriangle> triangles;
-    for (uint32_t cell = 0; cell < kinds.size(); ++cell) {
-        const uint32_t first = cell / (width - 1) * width + cell % (width - 1);
-        const bool main = kinds[cell] == CellKind::kShorter &&
-                          squared_distance(first, first + width + 1) <= squared_distance(first + 1, first + width);
-        const CellTriangles halves = triangles_of_cell(kinds[cell], first, width, main);
-        for (uint32_t k = 0; k < halves.count; ++k) triangles.push_back({halves.triangles[k], cell});
-    }
-    return triangles;
-}
-
-Result<Reconstruction> reconstruct(const MultiChartImage& image) {
-    const SampleMask& mask = image.mask;
-    GIM_TRY(point, glue_samples(mask, image.seams));
-    Reconstruction result;
-    std::vector<uint32_t> vertex(mask.defined.size(), kNone);
-    const auto vertex_of = [&](uint32_t sample) {
-        uint32_t& v = vertex[point[sample]];
-        if (v == kNone) {
-            v = static_cast<uint32_t>(result.sample.size());
-            result.sample.push_back(point[sample]);
-            result.mesh.positions.push_back(image.positions[point[sample]]);
-        }
-        return v;
-    };
-    for (const CellTriangle& triangle : triangles_of(image, point)) {
-        const auto [a, b, c] = triangle.corners;
-        if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) continue;
-        result.mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
-    }
-    return result;
 }
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// The model of the multi-chart layout: an image with undefined samples, and the record of its seams.
+// An image of packed charts, with undefined samples, and the record of its seams.
 // Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Sections 3 and 4.5.
 //
 // What the record leaves out follows from the mask: a chart's border is the loop of its triangles' border edges, triangles
@@ -7,11 +7,11 @@
 // goes with which. So a reader of mask and record can glue the samples again after lossy coding.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "encoder/charts/chart_mask.h"
+#include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
 #include "format/chart_border.h"
 #include "gim/encoder.h"
@@ -34,13 +34,10 @@ struct SeamRecord {
     std::vector<std::vector<ZipStep>> zippers;
 };
 
-struct MultiChartImage {
+// A geometry image of packed charts, and what its gluing follows from (glue_charts.h).
+struct MultiChartImage : GeometryImage {
     SampleMask mask;
-    std::vector<Vec3> positions;  // row-major; zero where undefined
     SeamRecord seams;
-
-    uint32_t width() const { return mask.width; }
-    uint32_t height() const { return mask.height; }
 };
 
 // Samples of every path from its begin to its end node, both included. Fails when the record does not fit the mask.
@@ -50,42 +47,8 @@ Result<std::vector<std::vector<uint32_t>>> path_samples(const SampleMask& mask, 
 // record does not fit the mask (lengths, mates, steps). O(samples).
 Result<std::vector<uint32_t>> glue_samples(const SampleMask& mask, const SeamRecord& seams);
 
-// The triangles of one cell of a mask.
-enum class CellKind : uint8_t {
-    kEmpty,  // fewer than three defined samples
-    kNoFirst,
-    kNoSecond,
-    kNoThird,
-    kNoFourth,  // one triangle; the corners are counted (0, 0) (0, 1) (1, 1) (1, 0)
-    kShorter,
-    kMain,
-    kAnti,  // two (format/split.h)
-};
-// (width - 1) * (height - 1) cells, row-major. `point`: of glue_samples.
+// Which triangles each cell of a mask has: (width - 1) * (height - 1) cells, row-major. point: of glue_samples. Splits as
+// the decoder does (format/chart_split.h).
 std::vector<CellKind> classify_cells(const SampleMask& mask, const std::vector<uint32_t>& point);
-// The triangles of a cell with first sample `first`: 0 to 2, counter-clockwise with columns along x and rows along y, also
-// those with two corners in one point. main: whether kShorter is to be split along the main diagonal.
-struct CellTriangles {
-    std::array<Triangle, 2> triangles;
-    uint32_t count = 0;
-};
-CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main);
-
-// A triangle over samples, and its cell.
-struct CellTriangle {
-    Triangle corners{};
-    uint32_t cell = 0;
-};
-// All triangles of all cells, split as the decoder splits them, also those with two corners in one point. point: of
-// glue_samples.
-std::vector<CellTriangle> triangles_of(const MultiChartImage& image, const std::vector<uint32_t>& point);
-
-// How the surface is put together: vertices are classes of samples, triangles those of the cells that have three
-// different vertices, split as the decoder splits them (format/chart_split.h).
-struct Reconstruction {
-    Mesh mesh;
-    std::vector<uint32_t> sample;  // per vertex: the first sample of its class
-};
-Result<Reconstruction> reconstruct(const MultiChartImage& image);
 
 }  // namespace gim

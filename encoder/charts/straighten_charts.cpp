@@ -5,7 +5,7 @@
 #include <queue>
 #include <unordered_map>
 
-#include "encoder/squares/cut.h"
+#include "encoder/surface/edge_paths.h"
 
 namespace gim {
 

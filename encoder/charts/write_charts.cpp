@@ -1,11 +1,13 @@
 #include "encoder/charts/write_charts.h"
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
+#include <utility>
 
 #include "encoder/base/parallel.h"
 #include "encoder/code/code_bands.h"
 #include "encoder/code/extend_chart.h"
+#include "encoder/code/file_units.h"
 #include "format/chart_border.h"
 
 namespace gim {
@@ -14,21 +16,21 @@ namespace {
 Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
 // Empty when all is well.
-std::string complaint(const ChartImages& images, const CodingParameters& p) {
+std::string complaint(const ChartLevels& images, const CodingParameters& p) {
     if (images.charts.empty() || images.levels.empty()) return "no chart to write";
-    if (p.bits < kMinBits || p.bits > kMaxBits) return "bits " + std::to_string(p.bits) + ": choose 8 to 20";
+    if (std::string c = bits_complaint(p.bits); !c.empty()) return c;
     if (images.charts.size() > kMaxCharts)
         return std::to_string(images.charts.size()) + " charts: the format takes " + std::to_string(kMaxCharts);
     if (images.mates.size() > kMaxChartPaths)
         return std::to_string(images.mates.size()) + " cut-paths: the format takes " + std::to_string(kMaxChartPaths) +
                "; ask for fewer charts";
-    if (images.image.width() > kMaxAtlasSide || images.image.height() > kMaxAtlasSide)
+    if (std::max(images.image.mask.width, images.image.mask.height) > kMaxAtlasSide)
         return "the image is too long for the format";
     for (size_t c = 0; c < images.charts.size(); ++c) {
         if (std::max(images.charts[c].columns, images.charts[c].rows) > kMaxChartSide)
             return "chart " + std::to_string(c) + " is too long for the format; ask for more charts";
         for (const Vec3& position : images.positions[c]) {
-            if (!position.allFinite() || position.cwiseAbs().maxCoeff() > double{kMaxOrigin})
+            if (!is_codable(position))
                 return "chart " + std::to_string(c) + ": a position is not a finite number of reasonable size";
         }
     }
@@ -36,7 +38,7 @@ std::string complaint(const ChartImages& images, const CodingParameters& p) {
 }
 
 // The positions of the defined samples: undefined ones do not count for the bounding box.
-std::vector<Vec3> defined_positions(const ChartImages& images) {
+std::vector<Vec3> defined_positions(const ChartLevels& images) {
     std::vector<Vec3> positions;
     for (size_t c = 0; c < images.charts.size(); ++c) {
         for (size_t i = 0; i < images.positions[c].size(); ++i) {
@@ -52,14 +54,14 @@ void chain_base(Pyramid<int32_t>* pyramid) {
 }
 
 template <class Wavelet>
-Pyramid<typename Wavelet::Sample> analyse_chart(const ChartImages& images, size_t c, const Header& header,
+Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_t c, const Units& units,
                                                 float finest) {
     using Sample = typename Wavelet::Sample;
     const ChartBox& box = images.charts[c];
-    std::vector<Sample> units = to_units<Sample>(images.positions[c], header);
-    units = extend_chart<Wavelet>(std::move(units), images.defined[c], box.columns, box.rows, box.steps(), finest);
-    Pyramid<Sample> pyramid = analyse<Wavelet>(std::move(units), box.columns, box.rows, box.steps());
-    subtract_middle(&pyramid, header.bits);
+    std::vector<Sample> samples = to_units<Sample>(images.positions[c], units);
+    samples = extend_chart<Wavelet>(std::move(samples), images.defined[c], box.columns, box.rows, box.steps(), finest);
+    Pyramid<Sample> pyramid = analyse<Wavelet>(std::move(samples), box.columns, box.rows, box.steps());
+    subtract_middle(&pyramid, units.bits);
     return pyramid;
 }
 
@@ -94,63 +96,68 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
     }
 }
 
-}  // namespace
-
-Result<ChartFileWriter> ChartFileWriter::create(const ChartImages& images, const CodingParameters& parameters) {
-    if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
-    ChartFileWriter writer;
-    Header& header = writer.header_;
+Header header_of(const ChartLevels& images, const CodingParameters& parameters) {
+    Header header;
     header.layout = FileLayout::kCharts;
     header.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
-    header.width = images.image.width();
-    header.height = images.image.height();
+    header.width = images.image.mask.width;
+    header.height = images.image.mask.height;
     header.level_count = static_cast<uint32_t>(images.levels.size());
     const std::vector<Vec3> defined = defined_positions(images);
     const std::span<const Vec3> all = defined;
-    set_quantizer({&all, 1}, parameters.bits, &header);
-    if (header.coding == Coding::kLossy) {
-        CellArea area;
-        for (size_t c = 0; c < images.charts.size(); ++c)
-            area.add(images.positions[c], images.defined[c], images.charts[c].columns, images.charts[c].rows);
-        area.set_details(&header);
-    }
-    writer.charts_ = images.charts;
-    writer.mates_ = images.mates;
-    writer.borders_ = images.levels;
-    writer.planes_ = parameters.planes;
-    writer.text_ = parameters.text;
-    if (parameters.level_psnr) writer.level_psnr_.assign(header.level_count, 0);
-
-    ChartTable table{images.charts, images.mates, {}};
-    for (const LevelBorders& level : images.levels) table.levels.push_back(level.size);
-    writer.table_ = serialize_chart_table(table, header);
-
-    const size_t count = images.charts.size();
-    const auto finest = static_cast<float>(parameters.lossless ? 1.0 : std::max(0.5, parameters.quantizer));
-    writer.lossless_.resize(parameters.lossless ? count : 0);
-    writer.lossy_.resize(parameters.lossless ? 0 : count);
-    parallel_blocks(count, 1, 0, [&](size_t, size_t begin, size_t end) {
-        for (size_t c = begin; c < end; ++c) {
-            if (parameters.lossless) {
-                writer.lossless_[c] = analyse_chart<Reversible53>(images, c, header, finest);
-            } else {
-                writer.lossy_[c] = analyse_chart<Irreversible97>(images, c, header, finest);
-            }
-        }
-    });
-    return writer;
+    static_cast<Units&>(header) = units_of_box({&all, 1}, parameters.bits);
+    if (parameters.lossless) return header;
+    CellArea area;
+    for (size_t c = 0; c < images.charts.size(); ++c)
+        area.add(images.positions[c], images.defined[c], images.charts[c].columns, images.charts[c].rows);
+    area.set_details(&header);
+    return header;
 }
 
-std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
-    Header header = header_;
-    header.level_psnr = level_psnr_;
-    if (header.coding == Coding::kLossy) header.quantizer = quantizer_in_range(quantizer);
+// The charts' part of a file.
+class ChartCoder final : public LevelCoder {
+  public:
+    ChartCoder(const ChartLevels& images, const CodingParameters& parameters)
+        : header_(header_of(images, parameters)),
+          charts_(images.charts),
+          mates_(images.mates),
+          borders_(images.levels) {
+        const size_t count = charts_.size();
+        const auto finest = static_cast<float>(parameters.lossless ? 1.0 : std::max(0.5, parameters.quantizer));
+        bands_.lossless.resize(parameters.lossless ? count : 0);
+        bands_.lossy.resize(parameters.lossless ? 0 : count);
+        parallel_blocks(count, 1, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t c = begin; c < end; ++c) {
+                if (parameters.lossless) {
+                    bands_.lossless[c] = analyse_chart<Reversible53>(images, c, header_, finest);
+                } else {
+                    bands_.lossy[c] = analyse_chart<Irreversible97>(images, c, header_, finest);
+                }
+            }
+        });
+    }
 
+    Header header() const override { return header_; }
+    std::vector<uint8_t> seam_payload() const override {
+        ChartTable table{charts_, mates_, {}};
+        for (const LevelBorders& level : borders_) table.levels.push_back(level.size);
+        return serialize_chart_table(table, header_);
+    }
+    std::vector<std::vector<uint8_t>> code_levels(const Header& header) const override;
+
+  private:
+    Header header_;
+    std::vector<ChartBox> charts_;
+    std::vector<uint32_t> mates_;
+    std::vector<LevelBorders> borders_;
+    ImageBands bands_;  // per chart
+};
+
+std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) const {
     uint32_t widest = 0;
     std::vector<Pyramid<int32_t>> bands;
     for (size_t c = 0; c < charts_.size(); ++c) {
-        bands.push_back(header.coding == Coding::kLossless ? lossless_[c]
-                                                           : quantize_bands(lossy_[c], detail_coding_of(header)).bands);
+        bands.push_back(bands_.quantized(c, header));
         chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }
@@ -168,7 +175,14 @@ std::vector<uint8_t> ChartFileWriter::write(double quantizer) const {
         }
         levels.push_back(encoder.finish());
     }
-    return assemble_file(header, table_, levels, planes_, text_);
+    return levels;
+}
+
+}  // namespace
+
+Result<FileWriter> charts_writer(const ChartLevels& images, const CodingParameters& parameters) {
+    if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
+    return FileWriter(std::make_unique<ChartCoder>(images, parameters), parameters);
 }
 
 }  // namespace gim

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "encoder/base/result.h"
+#include "encoder/charts/glue_charts.h"
 #include "encoder/surface/topology_summary.h"
 
 namespace gim {
@@ -444,7 +445,7 @@ class Zipper {
     }
 
     // Samples that are the tips of single triangles over a doubled edge: without them it is a border edge on that side.
-    std::vector<uint32_t> spikes_at(const TopologyAnalysis& analysis, const Reconstruction& surface,
+    std::vector<uint32_t> spikes_at(const TopologyAnalysis& analysis, const Surface& surface,
                                     const std::vector<uint32_t>& point) const {
         std::set<std::pair<uint32_t, uint32_t>> doubled;
         for (const uint32_t e : analysis.nonmanifold_edges) {
@@ -494,8 +495,10 @@ class Zipper {
     Result<std::vector<uint32_t>> repair() {
         constexpr int kMostRounds = 12;
         for (int round = 0;; ++round) {
-            GIM_TRY(point, glue_samples(image_.mask, image_.seams));
-            GIM_TRY(surface, reconstruct(image_));
+            GIM_TRY(gluing, glue_charts(image_.mask, image_.seams));
+            image_.gluing = std::move(gluing);
+            const std::vector<uint32_t>& point = image_.gluing.representative;
+            const Surface surface = surface_of(image_);
             const TopologyAnalysis analysis = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size());
             if (analysis.summary.manifold) return std::vector<uint32_t>{};
             std::vector<std::vector<uint8_t>> drop;

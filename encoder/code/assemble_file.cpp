@@ -2,6 +2,8 @@
 
 #include <zstd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "format/checksum.h"
@@ -39,45 +41,6 @@ Payload make_text_payload(const std::string& text) {
 
 }  // namespace
 
-void set_quantizer(std::span<const std::span<const Vec3>> positions, uint32_t bits, Header* header) {
-    Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
-    for (const auto& part : positions) {
-        for (const Vec3& p : part) {
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-    }
-    // A surface that is a single point still needs a positive step.
-    const double extent = (high - low).maxCoeff();
-    const double smallest = std::max(double{kMinStep}, low.cwiseAbs().maxCoeff() * 0x1p-60);
-    header->bits = bits;
-    header->step = static_cast<float>(std::max(extent / (std::exp2(bits) - 1), smallest));
-    for (int k = 0; k < 3; ++k) header->origin[static_cast<size_t>(k)] = static_cast<float>(low[k]);
-}
-
-void CellArea::add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns, uint32_t rows) {
-    for (size_t row = 0; row + 1 < rows; ++row) {
-        for (size_t column = 0; column + 1 < columns; ++column) {
-            const size_t a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-            if (!defined.empty() && !(defined[a] && defined[b] && defined[c] && defined[d])) continue;
-            sum_ += 0.5 * (positions[d] - positions[a]).cross(positions[c] - positions[b]).norm();
-            ++cells_;
-        }
-    }
-}
-
-void CellArea::set_details(Header* header) const {
-    header->tangential = static_cast<uint8_t>(8 * kTangentialRatio);
-    const double area = cells_ > 0 ? sum_ / static_cast<double>(cells_) / (double{header->step} * header->step) : 0;
-    uint8_t code = 1;
-    while (code < 255 && double{cell_area_of(static_cast<uint8_t>(code + 1))} <= area) ++code;
-    header->cell_area = code;
-}
-
-float quantizer_in_range(double quantizer) {
-    return std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
-}
-
 std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t> seams,
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text) {
@@ -92,6 +55,26 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
     std::vector<uint8_t> file = serialize_header(header, chunks);
     for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
     return file;
+}
+
+std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {
+    std::vector<uint8_t> changed(file.begin(), file.end());
+    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    Header header;
+    if (parse_header(file, no_limits, &header) != Status::kOk || header.level_psnr.size() != psnr.size())
+        return changed;
+    std::vector<uint8_t> coded;
+    for (size_t k = psnr.size(); k-- > 0;) {
+        coded.push_back(static_cast<uint8_t>(psnr[k] > 0 ? std::min(std::floor(2 * psnr[k]), 255.0) : 0.0));
+    }
+    header.level_psnr = coded;
+    std::vector<Chunk> chunks;
+    ChunkWalk walk(header);
+    Chunk chunk;
+    for (uint64_t offset = 0; walk.next(&chunk, &offset);) chunks.push_back(chunk);
+    const std::vector<uint8_t> head = serialize_header(header, chunks);
+    std::copy(head.begin(), head.end(), changed.begin());
+    return changed;
 }
 
 }  // namespace gim

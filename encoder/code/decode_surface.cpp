@@ -58,6 +58,12 @@ Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level) {
     return mesh;
 }
 
+Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
+                                const CompareOptions& options) {
+    GIM_TRY(decoded, decode_surface(bytes, 0));
+    return reference.compare(decoded, options);
+}
+
 Result<uint32_t> coarsest_level(std::span<const uint8_t> bytes) {
     GIM_TRY(info, read_own_info(bytes));
     uint32_t coarsest = info.level_count - 1;

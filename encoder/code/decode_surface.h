@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/mesh.h"
 #include "gim/decoder.h"
 #include "gim/encoder.h"
@@ -16,6 +17,10 @@ Result<gim_info> read_own_info(std::span<const uint8_t> bytes);
 // All images of the file at one level, side by side in one mesh. Images whose seams cannot be closed at that level are decoded
 // at their coarsest one. Fails with the decoder's status text.
 Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level);
+
+// The surface of a file at full resolution against the reference.
+Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
+                                const CompareOptions& options);
 
 // The coarsest level that every image of the file can close.
 Result<uint32_t> coarsest_level(std::span<const uint8_t> bytes);

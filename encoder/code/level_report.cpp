@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "encoder/base/result.h"
 #include "encoder/code/decode_surface.h"
@@ -35,6 +36,16 @@ Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_inf
     return report;
 }
 
+uint64_t sideband_size(std::span<const uint8_t> bytes) {
+    gim_info info;
+    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return 0;
+    gim_chunk chunk;
+    for (uint32_t i = 0; gim_read_chunk(&info, bytes.data(), bytes.size(), i, &chunk) == GIM_OK; ++i) {
+        if (std::string_view(chunk.name) == "SEAM") return chunk.size;
+    }
+    return 0;
+}
+
 }  // namespace
 
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
@@ -56,6 +67,20 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
         levels.push_back(report);
     }
     return levels;
+}
+
+std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count) {
+    std::vector<double> psnr(level_count, 0.0);
+    for (const LevelReport& level : levels) psnr[level.level] = level.psnr;
+    return psnr;
+}
+
+void describe_file(std::span<const uint8_t> bytes, EncodeReport& report) {
+    const double bits = 8.0 * static_cast<double>(bytes.size());
+    report.file_bytes = bytes.size();
+    report.sideband_bytes = sideband_size(bytes);
+    report.bits_per_sample = bits / static_cast<double>(report.samples);
+    report.bits_per_vertex = report.input_vertices > 0 ? bits / static_cast<double>(report.input_vertices) : 0;
 }
 
 }  // namespace gim

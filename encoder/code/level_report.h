@@ -16,4 +16,10 @@ namespace gim {
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
                                                 const Comparison& full, uint32_t threads);
 
+// PSNR for each level of the file; 0 for those that no image can close.
+std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count);
+
+// Sizes of a complete file. report: numbers of samples and input vertices are known.
+void describe_file(std::span<const uint8_t> bytes, EncodeReport& report);
+
 }  // namespace gim

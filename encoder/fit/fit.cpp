@@ -22,7 +22,6 @@
 #include "encoder/base/parallel.h"
 #include "encoder/base/result.h"
 #include "encoder/fit/fitter.h"
-#include "encoder/image/gluing.h"
 #include "encoder/surface/creases.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/surface_samples.h"
@@ -52,15 +51,14 @@ Schedule schedule_of(const FitOptions& options) {
     return schedule;
 }
 
-std::optional<Error> check_input(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
-                                 const std::vector<bool>& held) {
+std::optional<Error> check_input(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held) {
     const auto fail = [](const char* message) { return Error{Stage::kFit, message}; };
-    if (gluing.width < 3 || gluing.height < 3 || start.size() != gluing.sample_count())
+    if (image.width() < 3 || image.height() < 3 || image.positions.size() != image.gluing.sample_count())
         return fail("the image is not a rectangle of samples");
     if (reference.triangles.empty()) return fail("the mesh to fit to has no triangles");
-    if (!held.empty() && held.size() != start.size())
+    if (!held.empty() && held.size() != image.positions.size())
         return fail("the mask of held samples has another size than the image");
-    for (const Vec3& p : start) {
+    for (const Vec3& p : image.positions) {
         if (!p.allFinite()) return fail("the image has samples that are not finite");
     }
     return std::nullopt;
@@ -97,8 +95,10 @@ void run_schedule(Fitter& fitter, const Schedule& schedule, const Plan& plan, ui
     }
 }
 
-Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& input,
-                    const FitOptions& options, const Progress& progress) {
+Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOptions& options,
+                    const Progress& progress) {
+    const std::vector<Vec3>& start = image.positions;
+    const GridGluing& gluing = image.gluing;
     const FitFrame frame(input);
     const FitReference reference(Mesh{frame.into(input.positions), input.triangles});
     const Fitter untouched(start, reference, gluing, frame, options);
@@ -149,40 +149,28 @@ Fitted fit_in_arena(const std::vector<Vec3>& start, const GridGluing& gluing, co
 
 }  // namespace
 
-Result<Fitted> fit(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
-                   const FitOptions& options, const Progress& progress) {
-    if (auto bad = check_input(start, gluing, reference, options.held)) return *std::move(bad);
-    Fitted result;
-    with_threads(options.threads, [&] { result = fit_in_arena(start, gluing, reference, options, progress); });
-    return result;
-}
-
 Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
                    const Progress& progress) {
-    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
-    return fit(start.positions, gluing, reference, options, progress);
-}
-
-Result<FitQuality> measure_fit(const std::vector<Vec3>& positions, const GridGluing& gluing, const Mesh& reference,
-                               const std::vector<bool>& held, uint32_t threads) {
-    if (auto bad = check_input(positions, gluing, reference, held)) return *std::move(bad);
-    FitQuality quality;
-    with_threads(threads, [&] {
-        const FitFrame frame(reference);
-        const FitReference scaled(Mesh{frame.into(reference.positions), reference.triangles});
-        const std::vector<Vec3> points = frame.into(positions);
-        quality = measure(points, gluing, scaled, held.empty() ? std::vector<bool>(points.size(), false) : held,
-                          front_side(points, gluing, scaled));
-        quality.to_image /= frame.scale;
-        quality.to_reference /= frame.scale;
-    });
-    return quality;
+    if (auto bad = check_input(start, reference, options.held)) return *std::move(bad);
+    Fitted result;
+    with_threads(options.threads, [&] { result = fit_in_arena(start, reference, options, progress); });
+    return result;
 }
 
 Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held,
                                uint32_t threads) {
-    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
-    return measure_fit(image.positions, gluing, reference, held, threads);
+    if (auto bad = check_input(image, reference, held)) return *std::move(bad);
+    FitQuality quality;
+    with_threads(threads, [&] {
+        const FitFrame frame(reference);
+        const FitReference scaled(Mesh{frame.into(reference.positions), reference.triangles});
+        const std::vector<Vec3> points = frame.into(image.positions);
+        quality = measure(points, image.gluing, scaled, held.empty() ? std::vector<bool>(points.size(), false) : held,
+                          front_side(points, image.gluing, scaled));
+        quality.to_image /= frame.scale;
+        quality.to_reference /= frame.scale;
+    });
+    return quality;
 }
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// Fits the samples of an image, of either layout, to the surface that they were taken from: the image's triangles come
+// Fits the samples of an image to the surface that they were taken from: the image's triangles come
 // as near to it as their number allows.
 //
 // After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.6 (geometry-image
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "encoder/image/geometry_image.h"
-#include "encoder/image/gluing.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
@@ -56,14 +55,10 @@ struct Fitted {
 //      folds; or the start itself where the fit did not manage that.
 // Cost: O(samples + reference) a round; 257 x 257 loose: some seconds on two cores. The same result for any thread
 // count.
-Result<Fitted> fit(const std::vector<Vec3>& start, const GridGluing& gluing, const Mesh& reference,
-                   const FitOptions& options, const Progress& progress = {});
 Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
                    const Progress& progress = {});
 
 // How far an image is from a surface, and how often it folds over.
-Result<FitQuality> measure_fit(const std::vector<Vec3>& positions, const GridGluing& gluing, const Mesh& reference,
-                               const std::vector<bool>& held = {}, uint32_t threads = 0);
 Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held = {},
                                uint32_t threads = 0);
 

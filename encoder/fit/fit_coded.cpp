@@ -18,7 +18,6 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
-#include "encoder/base/result.h"
 #include "encoder/code/code_bands.h"
 #include "encoder/fit/detail_basis.h"
 #include "encoder/fit/fitter.h"
@@ -26,7 +25,6 @@
 #include "format/fuse.h"
 #include "format/ring.h"
 #include "format/seam.h"
-#include "format/sideband_code.h"
 
 namespace gim {
 
@@ -189,13 +187,6 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
-// The image's sideband is in order (glue_ring has taken it).
-SeamTable seams_of(const GeometryImage& image) {
-    SeamTable seams;
-    (void)build_seam_table(with_coarsest_node_grid(image.sideband), &seams);
-    return seams;
-}
-
 std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
     std::vector<uint32_t> classes(ring_length(side));
     gim::ring_classes(seams, side, classes);
@@ -205,15 +196,15 @@ std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
 }  // namespace
 
 struct CodedFit::Impl {
-    Impl(const GeometryImage& start, GridGluing glued, const Mesh& mesh, uint64_t first_seed)
-        : gluing(std::move(glued)),
+    Impl(const GeometryImage& start, const SeamTable& file_seams, const Mesh& mesh, uint64_t first_seed)
+        : gluing(start.gluing),
           frame(mesh),
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
           fitter(start.positions, reference, gluing, frame, {}),
           first_positions(fitter.positions()),
-          side(start.side),
-          seams(seams_of(start)),
-          ring_classes(classes_of(seams, start.side)),
+          side(start.width()),
+          seams(file_seams),
+          ring_classes(classes_of(seams, side)),
           seed(first_seed) {}
 
     GridGluing gluing;
@@ -239,36 +230,36 @@ struct CodedFit::Impl {
         rounds = cycled_rounds;
     }
 
-    // The samples as interleaved triples in units of the header, not rounded; and back.
-    std::vector<float> units(const Header& header) const {
+    // The samples as interleaved triples in units, not rounded; and back.
+    std::vector<float> samples_in(const Units& units) const {
         std::vector<float> image(3 * fitter.positions().size());
         for (size_t i = 0; i < fitter.positions().size(); ++i) {
             const Vec3 position = frame.out_of(fitter.positions()[i]);
             for (size_t k = 0; k < 3; ++k) {
-                const double from_origin = position[static_cast<int>(k)] - double{header.origin[k]};
-                image[3 * i + k] = static_cast<float>(from_origin / double{header.step});
+                const double from_origin = position[static_cast<int>(k)] - double{units.origin[k]};
+                image[3 * i + k] = static_cast<float>(from_origin / double{units.step});
             }
         }
         return image;
     }
 
-    void place_units(const std::vector<float>& image, const Header& header) {
+    void place_units(const std::vector<float>& image, const Units& units) {
         std::vector<Vec3> positions(image.size() / 3);
         for (size_t i = 0; i < image.size(); ++i) {
             positions[i / 3][static_cast<int>(i % 3)] =
-                double{image[i]} * double{header.step} + double{header.origin[i % 3]};
+                double{image[i]} * double{units.step} + double{units.origin[i % 3]};
         }
         fitter.place(frame.into(positions));
     }
 
     // One round of the head of this file. The membrane of other fits is left out: the price does its work.
-    void round(const Header& header, Free free) {
+    void round(const Units& units, Free free) {
         const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
-        const DetailCoding coding = detail_coding_of(header);
-        const std::vector<float> image = units(header);
+        const DetailCoding coding = detail_coding_of(units);
+        const std::vector<float> image = samples_in(units);
         const DetailBasis basis(image, side, coding, &seams);
         const Coordinates c = basis.analyse(image);
-        const auto unit = static_cast<float>(double{header.step} * frame.scale);  // in the frame
+        const auto unit = static_cast<float>(double{units.step} * frame.scale);  // in the frame
         CoordinateSystem coordinates(system, basis, gluing);
         const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
         const std::vector<float> change = coordinates.image_of(y);
@@ -278,42 +269,39 @@ struct CodedFit::Impl {
     }
 
     // Samples go where a decoder would put them.
-    void quantize(const Header& header) {
-        Pyramid<float> bands = analyse<Irreversible97>(units(header), side, &seams);
-        subtract_middle(&bands, header.bits);
-        std::vector<float> image = quantize_bands(bands, detail_coding_of(header), &seams).image;
-        for (float& x : image) x += static_cast<float>(1 << (header.bits - 1));
+    void quantize(const Units& units) {
+        Pyramid<float> bands = analyse<Irreversible97>(samples_in(units), side, &seams);
+        subtract_middle(&bands, units.bits);
+        std::vector<float> image = quantize_bands(bands, detail_coding_of(units), &seams).image;
+        for (float& x : image) x += static_cast<float>(1 << (units.bits - 1));
         const size_t ring = ring_classes.size();
         const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
         std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
         std::vector<uint32_t> first(ring), members(ring);
         fuse(side, ring_classes.data(), classes, image.data(),
              {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
-        place_units(image, header);
+        place_units(image, units);
     }
 };
 
-CodedFit::CodedFit(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 CodedFit::~CodedFit() = default;
 CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
-Result<CodedFit> CodedFit::create(const GeometryImage& start, const Mesh& reference, uint64_t seed) {
-    GIM_TRY(gluing, glue_ring(start.sideband, start.side));
-    return CodedFit(std::make_unique<Impl>(start, std::move(gluing), reference, seed));
-}
+CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
+    : impl_(std::make_unique<Impl>(start, seams, reference, seed)) {}
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
-std::vector<Vec3> CodedFit::run(const Header& header, Effort effort, const Progress& progress) {
+std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);
     int done = 0;
     const auto rounds = [&](const Schedule::Part& part) {
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
-            if (free == Free::kNormals) impl_->quantize(header);
-            impl_->round(header, free);
+            if (free == Free::kNormals) impl_->quantize(units);
+            impl_->round(units, free);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();

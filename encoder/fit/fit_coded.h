@@ -16,13 +16,15 @@
 #include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
+#include "format/seam.h"
 
 namespace gim {
 
 class CodedFit {
   public:
-    // Keeps its own copies. `seed` decides where distances are sampled.
-    static Result<CodedFit> create(const GeometryImage& start, const Mesh& reference, uint64_t seed);
+    // Keeps its own copies. start: of width and height 2^j + 1. seams: of the file; mates share their details. `seed`
+    // decides where distances are sampled.
+    CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
     ~CodedFit();
     CodedFit(CodedFit&&) noexcept;
     CodedFit& operator=(CodedFit&&) noexcept;
@@ -32,16 +34,14 @@ class CodedFit {
         kFinal,   // and what its file will hold
         kAdjust,  // the last rounds of the final fit before again, with a quantizer nearby
     };
-    // Goes on from where the last call ended (the start, at first). header: of the file to be: units, quantizer,
-    // tangential steps and cell area. Returns the samples, equal where glued; steps fold nothing over, the quantizer may.
+    // Goes on from where the last call ended (the start, at first). units: of the file to be. Returns the samples, equal where glued; steps fold nothing over, the quantizer may.
     // The same for any number of threads. Cost: of 257 x 257 samples about 0.3 s a round on two cores, 5, 24 or 9 rounds.
-    std::vector<Vec3> run(const Header& header, Effort effort, const Progress& progress = {});
+    std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
     // The next call goes on from the start again: samples that a coarse quantizer has heaped up do not come apart.
     void restart();
 
   private:
     struct Impl;
-    explicit CodedFit(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

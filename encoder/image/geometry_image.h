@@ -1,21 +1,32 @@
-// The model that every stage works from or to: surface points on a square grid and how its boundary is glued.
+// The model that every stage works from or to: surface points on a grid, and how they are one surface.
+// Layouts only produce a gluing: squares from a sideband, charts from a mask and a seam record, tiles from a base mesh.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "encoder/image/gluing.h"
 #include "encoder/surface/mesh.h"
-#include "format/sideband.h"
 
 namespace gim {
 
 struct GeometryImage {
-    uint32_t side = 0;            // samples per side, 2^j + 1
-    std::vector<Vec3> positions;  // side * side, row-major: sample (row, column) at row * side + column
-    Sideband sideband;            // gluing of the ring (format/sideband.h); empty paths: an open square
+    std::vector<Vec3> positions;  // width * height, row-major; zero where undefined; equal where glued
+    GridGluing gluing;
 
-    const Vec3& at(uint32_t row, uint32_t column) const { return positions[size_t{row} * side + column]; }
-    Vec3& at(uint32_t row, uint32_t column) { return positions[size_t{row} * side + column]; }
+    uint32_t width() const { return gluing.width; }
+    uint32_t height() const { return gluing.height; }
 };
+
+// The image's surface: one vertex for each surface point, triangles split as the decoder splits them. Triangles with two
+// corners at one point are left out. O(samples).
+struct Surface {
+    Mesh mesh;
+    std::vector<uint32_t> sample;  // per vertex: the first sample at that point
+};
+Surface surface_of(const GeometryImage& image);
+
+// The same triangles over all samples: vertex v is sample v, so that the seams are open.
+Mesh samples_as_mesh(const GeometryImage& image);
 
 }  // namespace gim

@@ -1,44 +1,13 @@
-// A grid of samples as a triangle surface (grid_surface.h). Cost O(samples).
 #include "encoder/image/gluing.h"
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
-#include <string>
 
 #include "encoder/base/parallel.h"
-#include "encoder/base/result.h"
-#include "format/seam.h"
 
 namespace gim {
 
 namespace {
-
-Error bad_seams(const std::string& why) { return Error{Stage::kFit, "the image's seams are inconsistent: " + why}; }
-
-// Samples of the ring, in ring order.
-std::vector<uint32_t> ring_samples(uint32_t side) {
-    std::vector<uint32_t> samples(ring_length(side));
-    for (uint32_t k = 0; k < samples.size(); ++k) {
-        const GridPoint at = ring_point(side, k);
-        samples[k] = at.row * side + at.column;
-    }
-    return samples;
-}
-
-void mark_boundary(const SeamTable& table, uint32_t side, const std::vector<uint32_t>& ring,
-                   std::vector<bool>& marked) {
-    if (table.path_count == 0) {
-        for (const uint32_t v : ring) marked[v] = true;
-        return;
-    }
-    const uint32_t unit = (side - 1) / (table.node_side - 1);
-    for (uint32_t p = 0; p < table.path_count; ++p) {
-        if (table.mate[p] != SeamTable::kBoundary) continue;
-        for (uint32_t k = table.first[p] * unit; k <= table.first[p + 1] * unit; ++k)
-            marked[ring[k % ring.size()]] = true;
-    }
-}
 
 // Samples that are one surface point, in any order; nothing for a single one.
 void add_class(std::vector<uint32_t> glued, GridGluing& gluing) {
@@ -52,11 +21,6 @@ void add_class(std::vector<uint32_t> glued, GridGluing& gluing) {
         gluing.on_input_boundary[v] = boundary;
     }
     gluing.shared.push_back(std::move(glued));
-}
-
-CellKind kind_of(Split split) {
-    if (split == Split::kMain) return CellKind::kMain;
-    return split == Split::kAnti ? CellKind::kAnti : CellKind::kShorter;
 }
 
 // Rows and columns of a cell's sides are edges of the surface where a triangle of the cell has them and their ends are
@@ -81,77 +45,66 @@ void find_edges(GridGluing& gluing) {
     }
 }
 
+// main: whether kShorter is split along the main diagonal.
+CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main) {
+    const uint32_t a = first, b = first + 1, c = first + width + 1, d = first + width;
+    switch (kind) {
+        case CellKind::kEmpty:
+            return {};
+        case CellKind::kNoFirst:
+            return {{{{b, c, d}, {}}}, 1};
+        case CellKind::kNoSecond:
+            return {{{{a, c, d}, {}}}, 1};
+        case CellKind::kNoThird:
+            return {{{{a, b, d}, {}}}, 1};
+        case CellKind::kNoFourth:
+            return {{{{a, b, c}, {}}}, 1};
+        default:
+            break;
+    }
+    if (kind == CellKind::kMain || (kind == CellKind::kShorter && main)) return {{{{a, b, c}, {a, c, d}}}, 2};
+    return {{{{a, b, d}, {b, c, d}}}, 2};
+}
+
 }  // namespace
+
+CellKind kind_of(Split split) {
+    if (split == Split::kMain) return CellKind::kMain;
+    return split == Split::kAnti ? CellKind::kAnti : CellKind::kShorter;
+}
 
 uint64_t GridGluing::defined_count() const {
     return static_cast<uint64_t>(
         std::count_if(representative.begin(), representative.end(), [](uint32_t v) { return v != kNone; }));
 }
 
-Result<GridGluing> glue_ring(const Sideband& sideband, uint32_t side) {
-    const auto table = std::make_unique<SeamTable>();
-    if (build_seam_table(sideband, table.get()) != Status::kOk)
-        return bad_seams("the paths do not fill the ring in pairs");
-    if (!is_grid_side(side) || side < table->node_side) return bad_seams("the node grid is finer than the image");
-
-    const size_t samples = size_t{side} * side;
+GridGluing make_gluing(GluedSamples samples) {
+    const size_t count = size_t{samples.width} * samples.height;
     GridGluing gluing;
-    gluing.width = gluing.height = side;
-    gluing.representative.resize(samples);
+    gluing.width = samples.width;
+    gluing.height = samples.height;
+    gluing.representative.resize(count);
     std::iota(gluing.representative.begin(), gluing.representative.end(), 0u);
-    gluing.class_of.assign(samples, kNone);
-    gluing.on_input_boundary.assign(samples, false);
-
-    const std::vector<uint32_t> ring = ring_samples(side);
-    mark_boundary(*table, side, ring, gluing.on_input_boundary);
-    std::vector<uint32_t> class_at(ring.size());
-    ring_classes(*table, side, class_at);
-    std::vector<std::vector<uint32_t>> members(ring.size());
-    for (size_t k = 0; k < ring.size(); ++k) members[class_at[k]].push_back(ring[k]);
-    for (std::vector<uint32_t>& glued : members) add_class(std::move(glued), gluing);
-
-    const uint32_t cells = side - 1;
-    gluing.kind.assign(size_t{cells} * cells, CellKind::kShorter);
-    for (uint32_t row = 0; row < cells; ++row) {
-        const bool row_end = row == 0 || row == cells - 1;
-        for (uint32_t column = 0; column < cells; column += row_end || cells < 2 ? 1 : cells - 1) {
-            const auto at = [&](uint32_t k) { return class_at[k]; };
-            gluing.kind[size_t{row} * cells + column] = kind_of(rim_split(side, row, column, at));
-        }
+    for (size_t v = 0; v < samples.defined.size(); ++v) {
+        if (!samples.defined[v]) gluing.representative[v] = kNone;
     }
+    gluing.class_of.assign(count, kNone);
+    gluing.on_input_boundary = std::move(samples.on_input_boundary);
+    for (std::vector<uint32_t>& glued : samples.classes) add_class(std::move(glued), gluing);
+    gluing.kind = std::move(samples.kind);
     find_edges(gluing);
     return gluing;
 }
 
-Result<GridGluing> glue_charts(const SampleMask& mask, const SeamRecord& seams) {
-    GridGluing gluing;
-    gluing.width = mask.width;
-    gluing.height = mask.height;
-    GIM_TRY(point, glue_samples(mask, seams));
-    gluing.representative = std::move(point);
-    const size_t samples = gluing.sample_count();
-    gluing.class_of.assign(samples, kNone);
-    gluing.on_input_boundary.assign(samples, false);
-    GIM_TRY(paths, path_samples(mask, seams));
-    for (size_t p = 0; p < paths.size(); ++p) {
-        if (seams.paths[p].mate != kNone) continue;
-        for (const uint32_t v : paths[p]) gluing.on_input_boundary[v] = true;
-    }
-    std::vector<std::vector<uint32_t>> members(samples);
-    for (uint32_t v = 0; v < samples; ++v) {
-        if (gluing.is_defined(v)) members[gluing.representative[v]].push_back(v);
-    }
-    for (std::vector<uint32_t>& glued : members) add_class(std::move(glued), gluing);
-    gluing.kind = classify_cells(mask, gluing.representative);
-    find_edges(gluing);
-    return gluing;
-}
-
-std::array<Triangle, 2> split_cell(const std::vector<Vec3>& positions, const GridGluing& gluing, uint32_t cell) {
+CellTriangles cell_triangles(const std::vector<Vec3>& positions, const GridGluing& gluing, uint32_t cell) {
     const auto [a, b, c, d] = gluing.corners(cell);
     const bool main = gluing.kind[cell] == CellKind::kShorter &&
                       (positions[a] - positions[d]).squaredNorm() <= (positions[b] - positions[c]).squaredNorm();
-    const CellTriangles all = triangles_of_cell(gluing.kind[cell], a, gluing.width, main);
+    return triangles_of_cell(gluing.kind[cell], a, gluing.width, main);
+}
+
+std::array<Triangle, 2> split_cell(const std::vector<Vec3>& positions, const GridGluing& gluing, uint32_t cell) {
+    const CellTriangles all = cell_triangles(positions, gluing, cell);
     std::array<Triangle, 2> result{kNoFace, kNoFace};
     for (uint32_t k = 0; k < all.count; ++k) {
         const auto point = [&](size_t i) { return gluing.representative[all.triangles[k][i]]; };

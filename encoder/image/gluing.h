@@ -1,18 +1,28 @@
-// Samples on a grid seen as a triangle surface: cells split as the decoder splits them, samples that are one surface
-// point told by class, some samples perhaps undefined. What the two layouts, the square and the packed charts, have in
-// common.
+// A grid of samples as a triangle surface. The gluing says which samples are one surface point, which are undefined, and
+// which triangles each cell carries. Cells are split as the decoder splits them. All layouts have this in common.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "encoder/charts/multi_chart_image.h"
-#include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
-#include "gim/encoder.h"
+#include "format/split.h"
 
 namespace gim {
+
+// The triangles of one cell.
+enum class CellKind : uint8_t {
+    kEmpty,  // fewer than three defined samples
+    kNoFirst,
+    kNoSecond,
+    kNoThird,
+    kNoFourth,  // one triangle; the corners are counted (0, 0) (0, 1) (1, 1) (1, 0)
+    kShorter,
+    kMain,
+    kAnti,  // two (format/split.h)
+};
+CellKind kind_of(Split split);
 
 // Which samples are one surface point, and what surface they make. Does not depend on positions.
 struct GridGluing {
@@ -37,14 +47,26 @@ struct GridGluing {
     }
 };
 
-// Fails when the sideband does not describe the ring of an image of that side.
-Result<GridGluing> glue_ring(const Sideband& sideband, uint32_t side);
+// What a layout knows of its samples.
+struct GluedSamples {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> defined;                // per sample; empty: all are
+    std::vector<std::vector<uint32_t>> classes;  // samples that are one surface point; those alone may be left out
+    std::vector<bool> on_input_boundary;         // per sample
+    std::vector<CellKind> kind;                  // per cell, row-major
+};
+// O(samples).
+GridGluing make_gluing(GluedSamples samples);
 
-// Fails when the record does not fit the mask.
-Result<GridGluing> glue_charts(const SampleMask& mask, const SeamRecord& seams);
-
-// The triangles of a cell; those that are not there, or have two corners at one surface point, are kNoFace. Wound so that
+// All triangles of a cell, also those with two corners at one surface point. Wound so that
 // (d position / d column) x (d position / d row) is the front.
+struct CellTriangles {
+    std::array<Triangle, 2> triangles;
+    uint32_t count = 0;
+};
+CellTriangles cell_triangles(const std::vector<Vec3>& positions, const GridGluing& gluing, uint32_t cell);
+
+// The same; triangles that are not there, or have two corners at one surface point, are kNoFace.
 inline constexpr Triangle kNoFace{kNone, kNone, kNone};
 std::array<Triangle, 2> split_cell(const std::vector<Vec3>& positions, const GridGluing& gluing, uint32_t cell);
 

@@ -1,28 +1,25 @@
 // States on the way for the caller's pictures (Observer).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "encoder/charts/atlas.h"
-#include "encoder/charts/multi_chart_image.h"
-#include "encoder/charts/pack.h"
 #include "encoder/image/geometry_image.h"
-#include "encoder/squares/open_mesh.h"
+#include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {
 
-// An opened mesh and its map.
-Snapshot make_snapshot(std::string name, std::string caption, const OpenedMesh& opened, const std::vector<Vec2>& uv);
+// A mesh that is open along its cut, and where its vertices lie in the plane.
+Snapshot make_snapshot(std::string name, std::string caption, const Mesh& opened,
+                       std::vector<std::array<uint32_t, 2>> cut, const std::vector<Vec2>& uv);
 
-// A geometry image as a surface; the rim of the square is the cut.
+// A geometry image as a surface. The cut is where the grid of triangles ends.
 Snapshot make_snapshot(std::string name, std::string caption, const GeometryImage& image);
 
-// Packed charts, and the surface cut open between them.
-Snapshot make_snapshot(std::string name, std::string caption, const Atlas& atlas, const Packing& packing);
-
-// A multi-chart image as a surface; the borders of the charts are the cut.
-Snapshot make_snapshot(std::string name, std::string caption, const MultiChartImage& image);
+// The edges of a closed loop of vertices.
+std::vector<std::array<uint32_t, 2>> edges_of_loop(const std::vector<uint32_t>& loop);
 
 }  // namespace gim

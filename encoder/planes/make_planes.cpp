@@ -1,20 +1,15 @@
 #include "encoder/planes/make_planes.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "encoder/base/parallel.h"
 #include "encoder/code/code_bands.h"
-#include "encoder/code/extend_chart.h"
 #include "encoder/planes/input_colors.h"
 #include "encoder/planes/sample_planes.h"
 #include "encoder/surface/surface_samples.h"
-#include "format/chart_table.h"
 #include "format/plane_code.h"
-#include "format/sideband_code.h"
 #include "gim/decoder.h"
 
 namespace gim {
@@ -28,8 +23,6 @@ constexpr uint32_t kMostAutomaticSide = 1025;
 constexpr uint32_t kMeasuredPoints = 100000;
 
 using Kind = PlaneReport::Kind;
-
-uint32_t exponent_of(uint32_t side) { return static_cast<uint32_t>(std::countr_zero(side - 1)); }
 
 // Smallest 2^j+1 that is not below.
 uint32_t grid_side_from(double least) {
@@ -225,41 +218,40 @@ struct PlaneMaker::Impl {
         return values;
     }
 
-    // Smaller images get smaller planes; never below the grid that their seams need.
-    uint32_t exponent(Kind kind, const GeometryImage& image, uint32_t largest_image) const {
-        const int wanted = static_cast<int>(exponent_of(side_of(kind)) + exponent_of(image.side)) -
-                           static_cast<int>(exponent_of(largest_image));
-        const uint32_t nodes = with_coarsest_node_grid(image.sideband).node_side;
-        return static_cast<uint32_t>(std::max({wanted, 1, static_cast<int>(exponent_of(std::max(nodes, 3u)))}));
+    // Values of the grid's texels; zero elsewhere. points: of the texels, on the input.
+    std::vector<float> plane_values(Kind kind, const TexelGrid& grid, std::span<const ClosestPoint> points) const {
+        const std::vector<float> values = samples(kind, points);
+        std::vector<float> plane(size_t{grid.columns} * grid.rows * 3, 0.0f);
+        for (size_t i = 0; i < grid.texels.size(); ++i) {
+            std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * i), 3,
+                        plane.begin() + static_cast<ptrdiff_t>(3 * size_t{grid.texels[i].index}));
+        }
+        return plane;
     }
 
-    Result<std::vector<AnalysedPlane>> analyse_all(std::span<const GeometryImage> images) const {
-        uint32_t largest = 0;
-        for (const GeometryImage& image : images) largest = std::max(largest, image.side);
+    std::vector<AnalysedPlane> analyse_all(const PlaneImages& images) const {
         std::vector<AnalysedPlane> planes;
-        for (const Kind kind : kinds()) planes.push_back({kind, {}, {}});
-        for (const GeometryImage& image : images) {
-            std::vector<ClosestPoint> points;  // shared by planes of one side
-            uint32_t located = 0;
+        for (const Kind kind : kinds()) planes.push_back({kind, images.plane_exponents(side_of(kind)), {}});
+        for (size_t image = 0; !planes.empty() && image < planes[0].side_exponents.size(); ++image) {
+            TexelGrid grid;  // shared by planes that are equally fine
+            std::vector<ClosestPoint> points;
+            std::optional<uint8_t> located;
             for (AnalysedPlane& plane : planes) {
-                const uint32_t j = exponent(plane.kind, image, largest), side = (1u << j) + 1;
-                if (located != side) {
-                    GIM_TRY(found, source->locate(image, side));
-                    points = std::move(found);
-                    located = side;
+                const uint8_t exponent = plane.side_exponents[image];
+                if (located != exponent) {
+                    grid = images.texel_grid(image, exponent);
+                    points = source->locate(grid.texels);
+                    located = exponent;
                 }
-                std::vector<float> values = samples(plane.kind, points);
-                GIM_TRY(equal, equalize_ring(with_coarsest_node_grid(image.sideband), side, values));
-                (void)equal;
-                plane.side_exponents.push_back(static_cast<uint8_t>(j));
-                plane.pyramids.push_back(analyse<Irreversible97>(std::move(values), side));
+                plane.pyramids.push_back(images.analyse_plane(image, grid, plane_values(plane.kind, grid, points),
+                                                              quantizer_of(plane.kind, plane_quality(options))));
             }
         }
         return planes;
     }
 };
 
-Result<std::vector<CodedPlane>> code_to_budget(const std::vector<AnalysedPlane>& planes, const EncodeOptions& options) {
+std::vector<CodedPlane> code_to_budget(const std::vector<AnalysedPlane>& planes, const EncodeOptions& options) {
     const RateTarget& rate = options.rate;
     for (double quality = plane_quality(options);; quality -= 5) {
         std::vector<CodedPlane> coded;
@@ -283,42 +275,9 @@ PlaneMaker::~PlaneMaker() = default;
 
 bool PlaneMaker::wants_any() const { return impl_->source.has_value(); }
 
-Result<std::vector<CodedPlane>> PlaneMaker::make(std::span<const GeometryImage> images) const {
-    if (!wants_any()) return std::vector<CodedPlane>{};
-    GIM_TRY(planes, impl_->analyse_all(images));
-    return code_to_budget(planes, impl_->options);
-}
-
-Result<std::vector<CodedPlane>> PlaneMaker::make(const MultiChartImage& image) const {
-    if (!wants_any()) return std::vector<CodedPlane>{};
-    std::vector<AnalysedPlane> planes;
-    AttributeSource::Texels texels;
-    for (const Kind kind : impl_->kinds()) {
-        const double per_sample = impl_->side_of(kind) / std::sqrt(double(image.width()) * image.height());
-        const auto exponent = static_cast<uint32_t>(
-            std::clamp(std::lround(std::log2(per_sample)), 0l, static_cast<long>(kMaxTexelExponent)));
-        if (planes.empty() || planes.back().side_exponents[0] != exponent) {
-            GIM_TRY(found, impl_->source->locate(image, exponent));
-            texels = std::move(found);
-        }
-        const auto columns = static_cast<uint32_t>(chart_plane_side(image.width(), exponent)),
-                   rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
-        const std::vector<float> values = impl_->samples(kind, texels.points);
-        std::vector<float> plane(size_t{columns} * rows * 3, 0.0f);
-        std::vector<uint8_t> defined(plane.size() / 3, 0);
-        for (size_t i = 0; i < texels.texels.size(); ++i) {
-            defined[texels.texels[i]] = 1;
-            std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * i), 3,
-                        plane.begin() + static_cast<ptrdiff_t>(3 * size_t{texels.texels[i]}));
-        }
-        const uint32_t steps = halvings(columns, rows);
-        constexpr int kRounds = 12;
-        plane = extend_chart<Irreversible97>(std::move(plane), defined, columns, rows, steps,
-                                             quantizer_of(kind, plane_quality(impl_->options)), kRounds);
-        planes.push_back({kind, {static_cast<uint8_t>(exponent)}, {}});
-        planes.back().pyramids.push_back(analyse<Irreversible97>(std::move(plane), columns, rows, steps));
-    }
-    return code_to_budget(planes, impl_->options);
+std::vector<CodedPlane> PlaneMaker::make(const PlaneImages& images) const {
+    if (!wants_any()) return {};
+    return code_to_budget(impl_->analyse_all(images), impl_->options);
 }
 
 Result<std::vector<PlaneReport>> PlaneMaker::measure(std::span<const uint8_t> file) const {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "encoder/base/result.h"
-#include "encoder/charts/multi_chart_image.h"
-#include "encoder/image/geometry_image.h"
-#include "encoder/squares/write_squares.h"
+#include "encoder/code/assemble_file.h"
+#include "encoder/planes/plane_images.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -25,10 +24,7 @@ class PlaneMaker {
 
     // Planes of all images, one chunk per kind. A --bytes target gets planes of half of its bytes at most, in lower quality
     // if need be. O(texels log F).
-    Result<std::vector<CodedPlane>> make(std::span<const GeometryImage> images) const;
-
-    // Planes of a multi-chart image, as fine as `side` samples a side would be on a square of as many samples.
-    Result<std::vector<CodedPlane>> make(const MultiChartImage& image) const;
+    std::vector<CodedPlane> make(const PlaneImages& images) const;
 
     // The planes of a complete file against the input.
     Result<std::vector<PlaneReport>> measure(std::span<const uint8_t> file) const;

@@ -5,10 +5,6 @@
 #include <numbers>
 
 #include "encoder/base/parallel.h"
-#include "encoder/image/gluing.h"
-#include "encoder/surface/stretch.h"
-#include "format/cell.h"
-#include "format/plane_code.h"
 
 namespace gim {
 
@@ -21,11 +17,6 @@ double corner_angle(const Mesh& mesh, uint32_t h) {
     const Vec3& p = mesh.positions[from(mesh, h)];
     const Vec3 a = mesh.positions[to(mesh, h)] - p, b = mesh.positions[from(mesh, prev(h))] - p;
     return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-Vec3 unit_or_zero(const Vec3& v) {
-    const double length = v.norm();
-    return length > 0 ? Vec3(v / length) : Vec3::Zero();
 }
 
 std::vector<Vec3> face_normals(const Mesh& mesh) {
@@ -91,46 +82,6 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, uint32_t threads) {
     return normals;
 }
 
-// The image as a surface: points and outside directions at real grid coordinates.
-class GridSurface {
-  public:
-    GridSurface(const GeometryImage& image, GridGluing gluing) : image_(image), gluing_(std::move(gluing)) {
-        outside_.assign(image.positions.size(), Vec3::Zero());
-        for (const Triangle& t : triangulate_grid(image.positions, gluing_).triangles) {
-            const Vec3& a = image.positions[t[0]];
-            const Vec3 n = (image.positions[t[1]] - a).cross(image.positions[t[2]] - a);
-            for (const uint32_t v : t) outside_[gluing_.representative[v]] += n;
-        }
-        for (size_t v = 0; v < outside_.size(); ++v) outside_[v] = unit_or_zero(outside_[gluing_.representative[v]]);
-    }
-
-    struct Point {
-        Vec3 position, outside;
-        double spacing = 0;  // the cell's longer diagonal
-    };
-    // 0 .. side-1 each.
-    Point at(double row, double column) const {
-        const CellPoint place = locate_in_cell(image_.side, row, column);
-        const auto& [a, b, c, d] = place.corners;
-        const bool main = split_cell(image_.positions, gluing_, place.cell)[0][2] == d;
-        const std::array<double, 4> w = place.weights(main);
-        Point p{Vec3::Zero(), Vec3::Zero(), 0};
-        for (size_t i = 0; i < 4; ++i) {
-            p.position += w[i] * image_.positions[place.corners[i]];
-            p.outside += w[i] * outside_[place.corners[i]];
-        }
-        p.outside = unit_or_zero(p.outside);
-        p.spacing = std::max((image_.positions[a] - image_.positions[d]).norm(),
-                             (image_.positions[b] - image_.positions[c]).norm());
-        return p;
-    }
-
-  private:
-    const GeometryImage& image_;
-    GridGluing gluing_;
-    std::vector<Vec3> outside_;
-};
-
 }  // namespace
 
 AttributeSource::AttributeSource(const Mesh& mesh, uint32_t threads)
@@ -157,82 +108,15 @@ void AttributeSource::keep_to_the_right_side(const Vec3& query, const Vec3& outs
     }
 }
 
-std::vector<ClosestPoint> AttributeSource::locate(const std::vector<Query>& queries) const {
-    std::vector<Vec3> positions(queries.size());
-    for (size_t i = 0; i < queries.size(); ++i) positions[i] = queries[i].position;
+std::vector<ClosestPoint> AttributeSource::locate(std::span<const Texel> texels) const {
+    std::vector<Vec3> positions(texels.size());
+    for (size_t i = 0; i < texels.size(); ++i) positions[i] = texels[i].position;
     std::vector<ClosestPoint> found = tree_.find_all(positions, threads_);
-    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
+    parallel_blocks(texels.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
-            keep_to_the_right_side(queries[i].position, queries[i].outside, queries[i].spacing, &found[i]);
+            keep_to_the_right_side(texels[i].position, texels[i].outside, texels[i].spacing, &found[i]);
     });
     return found;
-}
-
-Result<std::vector<ClosestPoint>> AttributeSource::locate(const GeometryImage& image, uint32_t side) const {
-    GIM_TRY(gluing, glue_ring(image.sideband, image.side));
-    const GridSurface surface(image, std::move(gluing));
-    const double scale = double(image.side - 1) / (side - 1);
-    std::vector<Query> queries(size_t{side} * side);
-    parallel_blocks(queries.size(), kBlock, threads_, [&](size_t, size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const size_t row = i / side, column = i % side;
-            const auto p = surface.at(double(row) * scale, double(column) * scale);
-            queries[i] = {p.position, p.outside, p.spacing};
-        }
-    });
-    return locate(queries);
-}
-
-Result<AttributeSource::Texels> AttributeSource::locate(const MultiChartImage& image, uint32_t exponent) const {
-    GIM_TRY(point, glue_samples(image.mask, image.seams));
-    const uint32_t width = image.width(), per_sample = 1u << exponent;
-    const auto columns = static_cast<uint32_t>(chart_plane_side(width, exponent)),
-               rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
-    const std::vector<CellTriangle> faces = triangles_of(image, point);
-    std::vector<Vec3> outside(image.positions.size(), Vec3::Zero());
-    for (const CellTriangle& face : faces) {
-        const auto& [a, b, c] = face.corners;
-        const Vec3 normal = (image.positions[b] - image.positions[a]).cross(image.positions[c] - image.positions[a]);
-        for (const uint32_t v : face.corners) outside[point[v]] += normal;
-    }
-    // Texels by the faces that they lie in; those on an edge belong to the first.
-    Texels result;
-    std::vector<Query> queries;
-    std::vector<bool> taken(size_t{columns} * rows, false);
-    for (const CellTriangle& face : faces) {
-        const uint32_t row = face.cell / (width - 1), column = face.cell % (width - 1);
-        std::array<Vec2, 3> corner;
-        for (size_t k = 0; k < 3; ++k) {
-            const uint32_t i = face.corners[k] % width - column, j = face.corners[k] / width - row;
-            corner[k] = Vec2(i, j);
-        }
-        const double area = twice_signed_area(corner[0], corner[1], corner[2]);
-        for (uint32_t i = 0; i <= per_sample; ++i) {
-            for (uint32_t j = 0; j <= per_sample; ++j) {
-                const Vec2 p = Vec2(j, i) / per_sample;
-                const std::array<double, 3> w{twice_signed_area(p, corner[1], corner[2]) / area,
-                                              twice_signed_area(corner[0], p, corner[2]) / area,
-                                              twice_signed_area(corner[0], corner[1], p) / area};
-                if (std::min({w[0], w[1], w[2]}) < 0) continue;  // exact: all are multiples of 2^-k
-                const uint32_t texel = (row * per_sample + i) * columns + column * per_sample + j;
-                if (taken[texel]) continue;
-                taken[texel] = true;
-                Query query;
-                for (size_t k = 0; k < 3; ++k) {
-                    query.position += w[k] * image.positions[face.corners[k]];
-                    query.outside += w[k] * unit_or_zero(outside[point[face.corners[k]]]);
-                    query.spacing = std::max(
-                        query.spacing,
-                        (image.positions[face.corners[k]] - image.positions[face.corners[(k + 1) % 3]]).norm());
-                }
-                query.outside = unit_or_zero(query.outside);
-                result.texels.push_back(texel);
-                queries.push_back(query);
-            }
-        }
-    }
-    result.points = locate(queries);
-    return result;
 }
 
 Vec3 AttributeSource::normal(const ClosestPoint& point) const {
@@ -250,17 +134,6 @@ std::vector<float> AttributeSource::normals(std::span<const ClosestPoint> points
         }
     });
     return values;
-}
-
-Result<bool> equalize_ring(const Sideband& sideband, uint32_t side, std::vector<float>& values) {
-    GIM_TRY(gluing, glue_ring(sideband, side));
-    for (size_t i = 0; i < gluing.representative.size(); ++i) {
-        const size_t from = gluing.representative[i];
-        if (from != i)
-            std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * from), 3,
-                        values.begin() + static_cast<ptrdiff_t>(3 * i));
-    }
-    return true;
 }
 
 }  // namespace gim

@@ -11,9 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "encoder/base/result.h"
-#include "encoder/charts/multi_chart_image.h"
-#include "encoder/image/geometry_image.h"
+#include "encoder/planes/plane_images.h"
 #include "encoder/surface/closest_point.h"
 
 namespace gim {
@@ -24,16 +22,8 @@ class AttributeSource {
     // Keeps a reference to the mesh.
     explicit AttributeSource(const Mesh& mesh, uint32_t threads = 0);
 
-    // The input's point for every texel of a side x side plane of the image, row-major. Fails on inconsistent seams.
-    // O(side^2 log F).
-    Result<std::vector<ClosestPoint>> locate(const GeometryImage& image, uint32_t side) const;
-
-    // Of charts, 2^exponent texels a sample: only those that lie in a triangle, told by their numbers in the plane, row-major.
-    struct Texels {
-        std::vector<uint32_t> texels;
-        std::vector<ClosestPoint> points;
-    };
-    Result<Texels> locate(const MultiChartImage& image, uint32_t exponent) const;
+    // The input's point for every texel. O(texels log F).
+    std::vector<ClosestPoint> locate(std::span<const Texel> texels) const;
 
     // Unit normals, one triple per point: interpolated within a face, with corners that are smooth over edges bent by less
     // than kCreaseAngle and sharp over others.
@@ -45,13 +35,6 @@ class AttributeSource {
     static constexpr double kCreaseAngle = 60;  // degrees
 
   private:
-    // A point of the image's surface.
-    struct Query {
-        Vec3 position = Vec3::Zero(), outside = Vec3::Zero();
-        double spacing = 0;  // of samples around it
-    };
-    std::vector<ClosestPoint> locate(const std::vector<Query>& queries) const;
-
     Vec3 face_normal(uint32_t face) const;
     void keep_to_the_right_side(const Vec3& query, const Vec3& outside, double spacing, ClosestPoint* found) const;
 
@@ -60,8 +43,5 @@ class AttributeSource {
     std::vector<Vec3> corner_normals_;  // 3 per face
     uint32_t threads_;
 };
-
-// Values of all members of a class become those of its first one. values: side*side triples.
-Result<bool> equalize_ring(const Sideband& sideband, uint32_t side, std::vector<float>& values);
 
 }  // namespace gim

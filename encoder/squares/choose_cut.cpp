@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "encoder/code/rate_control.h"
+#include "encoder/code/rate_target.h"
 #include "encoder/squares/coding_trial.h"
 
 namespace gim {

@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 
 namespace gim {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct QueueEntry {
-    double distance;
-    uint32_t element;
-    bool operator>(const QueueEntry& o) const {
-        return distance != o.distance ? distance > o.distance : element > o.element;
-    }
-};
-using MinQueue = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>>;
 
 Vec3 centroid(const Mesh& mesh, uint32_t f) {
     const Triangle& t = mesh.triangles[f];
@@ -73,12 +63,6 @@ void trim(const Mesh& mesh, const Topology& topology, CutEdges& cut) {
             if (--valence[w] == 1) leaves.push_back(w);
         });
     }
-}
-
-double path_length(const Mesh& mesh, const std::vector<uint32_t>& path) {
-    double length = 0;
-    for (const uint32_t h : path) length += (mesh.positions[to(mesh, h)] - mesh.positions[from(mesh, h)]).norm();
-    return length;
 }
 
 std::vector<uint32_t> vertices_of(const Mesh& mesh, const std::vector<uint32_t>& path) {
@@ -176,43 +160,6 @@ double cut_length(const Mesh& mesh, const Topology& topology, const CutEdges& cu
     return length;
 }
 
-std::vector<uint32_t> shortest_path(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources,
-                                    const std::vector<uint8_t>& goal, const std::vector<uint8_t>& allowed) {
-    std::vector<double> distance(mesh.positions.size(), kInfinity);
-    std::vector<uint32_t> arrival(mesh.positions.size(), kNone);  // half-edge that reaches the vertex
-    std::vector<uint8_t> done(mesh.positions.size(), 0);
-    MinQueue queue;
-    for (const uint32_t v : sources) {
-        distance[v] = 0;
-        queue.push({0, v});
-    }
-    const auto relax = [&](uint32_t v, uint32_t w, uint32_t h) {
-        if (done[w] || !(allowed[w] || goal[w])) return;
-        const double d = distance[v] + (mesh.positions[v] - mesh.positions[w]).norm();
-        if (d >= distance[w]) return;
-        distance[w] = d;
-        arrival[w] = h;
-        queue.push({d, w});
-    };
-    while (!queue.empty()) {
-        const uint32_t v = queue.top().element;
-        queue.pop();
-        if (done[v]) continue;
-        done[v] = 1;
-        if (goal[v] && arrival[v] != kNone) {
-            std::vector<uint32_t> path;
-            for (uint32_t at = v; arrival[at] != kNone; at = from(mesh, path.back())) path.push_back(arrival[at]);
-            std::reverse(path.begin(), path.end());
-            return path;
-        }
-        // A closed path (both ends the same vertex) may not leave through a boundary edge: those carry no mark.
-        for_each_outgoing(topology, v, [&](uint32_t h) {
-            if (topology.twin[h] != kNone) relax(v, to(mesh, h), h);
-        });
-    }
-    return {};
-}
-
 CutEdges initial_cut(const Mesh& mesh, const Topology& topology, uint32_t seed_triangle) {
     uint32_t farthest = seed_triangle;
     CutEdges cut = remove_triangles(mesh, topology, seed_triangle, farthest);
@@ -224,33 +171,6 @@ CutEdges initial_cut(const Mesh& mesh, const Topology& topology, uint32_t seed_t
         mark_path(topology, {3 * farthest, 3 * farthest + 1}, 1, cut);
     }
     return cut;
-}
-
-std::vector<double> edge_distance(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources) {
-    std::vector<double> distance(mesh.positions.size(), kInfinity);
-    std::vector<uint8_t> done(mesh.positions.size(), 0);
-    MinQueue queue;
-    for (const uint32_t v : sources) {
-        distance[v] = 0;
-        queue.push({0, v});
-    }
-    while (!queue.empty()) {
-        const uint32_t v = queue.top().element;
-        queue.pop();
-        if (done[v]) continue;
-        done[v] = 1;
-        const auto relax = [&](uint32_t w) {
-            const double reach = distance[v] + (mesh.positions[v] - mesh.positions[w]).norm();
-            if (reach >= distance[w]) return;
-            distance[w] = reach;
-            queue.push({reach, w});
-        };
-        for_each_outgoing(topology, v, [&](uint32_t h) {
-            relax(to(mesh, h));
-            if (topology.twin[prev(h)] == kNone) relax(from(mesh, prev(h)));
-        });
-    }
-    return distance;
 }
 
 CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut,

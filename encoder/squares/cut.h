@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/squares/open_mesh.h"
+#include "encoder/surface/edge_paths.h"
 #include "encoder/surface/mesh.h"
 
 namespace gim {
@@ -33,30 +34,10 @@ CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdg
 // meant for coarse meshes.
 CutEdges shorten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
-// The shortest edge path from any vertex of `sources` to a vertex v with goal[v], through vertices with allowed[v]
-// (goals need not be allowed); half-edges in order, empty if there is none. Path length in object units. O(E log E).
-std::vector<uint32_t> shortest_path(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources,
-                                    const std::vector<uint8_t>& goal, const std::vector<uint8_t>& allowed);
-
-// Distance along edges from the nearest source, per vertex. O(E log E).
-std::vector<double> edge_distance(const Mesh& mesh, const Topology& topology, const std::vector<uint32_t>& sources);
-
 // Marks (or clears) a path of half-edges in the cut.
 void mark_path(const Topology& topology, const std::vector<uint32_t>& half_edges, uint8_t value, CutEdges& cut);
 
 // Sum of the lengths of the cut's edges, input boundaries left out.
 double cut_length(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
-
-// Calls visit(h) for every half-edge that leaves v (those of boundary edges that enter v are not visited).
-template <class Visit>
-void for_each_outgoing(const Topology& topology, uint32_t v, Visit&& visit) {
-    const uint32_t first = topology.outgoing[v];
-    uint32_t h = first;
-    while (h != kNone) {
-        visit(h);
-        h = topology.twin[prev(h)];
-        if (h == first) break;
-    }
-}
 
 }  // namespace gim

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "encoder/image/gluing.h"
 #include "format/ring.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
@@ -19,7 +18,7 @@ constexpr size_t kMostPairsPerEdge = 64;
 
 Error error(std::string message) { return {Stage::kInput, std::move(message)}; }
 
-std::vector<Vec3> ring_positions(const GeometryImage& image) {
+std::vector<Vec3> ring_positions(const SquareGrid& image) {
     std::vector<Vec3> ring;
     for (uint32_t k = 0; k < ring_length(image.side); ++k) {
         const GridPoint p = ring_point(image.side, k);
@@ -28,8 +27,8 @@ std::vector<Vec3> ring_positions(const GeometryImage& image) {
     return ring;
 }
 
-GeometryImage resampled(const GeometryImage& image, uint32_t side) {
-    GeometryImage out;
+SquareGrid resampled(const SquareGrid& image, uint32_t side) {
+    SquareGrid out;
     out.side = side;
     const double scale = double(image.side - 1) / double(side - 1);
     const auto place = [&](uint32_t i) {
@@ -143,7 +142,7 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
 }
 
 // Signed volume between the surface and the middle of its samples; exact for a closed one, a fair sign for an open one.
-double signed_volume(const GeometryImage& image) {
+double signed_volume(const SquareGrid& image) {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : image.positions) middle += p / static_cast<double>(image.positions.size());
     double six_volumes = 0;
@@ -157,14 +156,14 @@ double signed_volume(const GeometryImage& image) {
     return six_volumes / 6;
 }
 
-GeometryImage transposed(const GeometryImage& image) {
-    GeometryImage out = image;
+SquareGrid transposed(const SquareGrid& image) {
+    SquareGrid out = image;
     for (uint32_t r = 0; r < image.side; ++r)
         for (uint32_t c = 0; c < image.side; ++c) out.at(c, r) = image.at(r, c);
     return out;
 }
 
-void weld(const SeamTable& seams, GeometryImage* image) {
+void weld(const SeamTable& seams, SquareGrid* image) {
     std::vector<uint32_t> class_of(ring_length(image->side));
     ring_classes(seams, image->side, class_of);
     const uint32_t count = *std::max_element(class_of.begin(), class_of.end()) + 1;
@@ -183,12 +182,12 @@ void weld(const SeamTable& seams, GeometryImage* image) {
 
 }  // namespace
 
-Sideband find_gluing(const GeometryImage& image, double weld_tolerance) {
+Sideband find_gluing(const SquareGrid& image, double weld_tolerance) {
     const std::vector<EdgePair> pairs = matching_edges(ring_positions(image), weld_tolerance);
     return to_sideband(pair_edges(pairs, ring_length(image.side)), image.side);
 }
 
-Result<GeometryImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance) {
+Result<SquareImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance) {
     const size_t plane = size_t{side} * side;
     if (side < 3 || side > (1u << kMaxSideExponent) + 1)
         return error("a geometry image of side " + std::to_string(side) + " cannot be coded: 3 to 16385 are possible");
@@ -197,7 +196,7 @@ Result<GeometryImage> import_image(const std::vector<float>& planes, uint32_t si
                      " values, not " + std::to_string(planes.size()));
     if (!(weld_tolerance >= 0)) return error("the weld tolerance must not be negative");
 
-    GeometryImage image;
+    SquareGrid image;
     image.side = side;
     for (size_t i = 0; i < plane; ++i) {
         image.positions.emplace_back(planes[i], planes[plane + i], planes[2 * plane + i]);
@@ -212,18 +211,17 @@ Result<GeometryImage> import_image(const std::vector<float>& planes, uint32_t si
     }
     if (signed_volume(image) < 0) image = transposed(image);
 
-    image.sideband = find_gluing(image, weld_tolerance);
+    Sideband sideband = find_gluing(image, weld_tolerance);
     SeamTable seams;
-    if (build_seam_table(image.sideband, &seams) != Status::kOk)
-        return error("the ring matches itself in " + std::to_string(image.sideband.paths.size()) +
+    if (build_seam_table(sideband, &seams) != Status::kOk)
+        return error("the ring matches itself in " + std::to_string(sideband.paths.size()) +
                      " pieces, more than a file can tell; try another weld tolerance");
     if (!level_is_closed(seams, image.side))
         return error(
             "glued where its boundary samples match, the image is not a manifold mesh (a cut that ends in a corner of "
-            "the "
-            "square, or repeated samples); try a smaller weld tolerance");
+            "the square, or repeated samples); try a smaller weld tolerance");
     weld(seams, &image);
-    return image;
+    return glue_square(std::move(image), std::move(sideband));
 }
 
 }  // namespace gim

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "encoder/base/result.h"
-#include "encoder/image/geometry_image.h"
+#include "encoder/squares/square_image.h"
 
 namespace gim {
 
@@ -17,10 +17,10 @@ namespace gim {
 //      what matches nothing is a boundary of the surface, turned so that a closed surface has its outside outside.
 //      An Error names the sample or the side and tells what to do.
 // Cost: O(side^2 + ring log ring + matching pairs). Deterministic.
-Result<GeometryImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance);
+Result<SquareImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance);
 
 // The gluing of the ring of an image as it is: every ring edge is glued to at most one other that runs the opposite way
 // between the same two points. Empty paths: nothing matches.
-Sideband find_gluing(const GeometryImage& image, double weld_tolerance);
+Sideband find_gluing(const SquareGrid& image, double weld_tolerance);
 
 }  // namespace gim

@@ -30,6 +30,10 @@ std::string percent(double part) {
     return text;
 }
 
+Snapshot show_map(std::string name, std::string caption, const OpenedMesh& opened, const std::vector<Vec2>& uv) {
+    return make_snapshot(std::move(name), std::move(caption), opened.mesh, edges_of_loop(opened.loop), uv);
+}
+
 // The search for the cut, state by state.
 void show_cut_search(const FoundCut& found, const Observer& observer) {
     const Topology topology = build_topology(found.searched);
@@ -42,7 +46,7 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
         char name[32];
         std::snprintf(name, sizeof name, "cut-%02u", number++);
         const std::string reached = step.efficiency > 0 ? "stretch efficiency " + percent(step.efficiency) : "start";
-        observer(make_snapshot(name, reached, opened.value(), circle_map(opened.value())));
+        observer(show_map(name, reached, opened.value(), circle_map(opened.value())));
     }
 }
 
@@ -79,22 +83,22 @@ Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, cons
     std::vector<Vec2> uv = std::move(even);
     chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
-        observer(
-            make_snapshot("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
+        observer(show_map("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
     }
     if (options.density) {
         ParametrizeOptions weighted;
         const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
-        weighted.importance = importance_from_error(disk, uv, sample_surface(cut.boundary, uv, options.side),
-                                                    lossless ? DensityOptions{} : kCodedDensity);
+        GIM_TRY(first, sample_surface(cut.boundary, uv, options.side));
+        weighted.importance = importance_from_error(disk, uv, first, lossless ? DensityOptions{} : kCodedDensity);
         GIM_TRY(adapted, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
         uv = std::move(adapted);
-        if (observer) observer(make_snapshot("map-density", "denser where it errs", cut.boundary.opened, uv));
+        if (observer) observer(show_map("map-density", "denser where it errs", cut.boundary.opened, uv));
     }
     chart.flipped_triangles = count_flipped(disk, uv);
 
     clock.begin(Stage::kSample);
-    chart.image = sample_surface(cut.boundary, uv, options.side);
+    GIM_TRY(sampled, sample_surface(cut.boundary, uv, options.side));
+    chart.image = std::move(sampled);
     if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
     const auto strength = fit_strength(options);
     if (!strength) return chart;

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "encoder/base/stage_clock.h"
-#include "encoder/image/geometry_image.h"
 #include "encoder/squares/augment_cut.h"
 #include "encoder/squares/boundary_map.h"
+#include "encoder/squares/square_image.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -22,7 +22,7 @@ struct CutPreference {
 };
 
 struct SingleChart {
-    GeometryImage image;
+    SquareImage image;
     double cut_length = 0;           // object units
     double stretch_efficiency = 0;   // of the parametrization that was sampled
     uint64_t flipped_triangles = 0;  // in it; 0 by construction, counted all the same

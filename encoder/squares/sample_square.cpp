@@ -19,7 +19,7 @@ std::array<uint32_t, 2> ring_cell(uint32_t p, uint32_t side) {
 }
 
 // Samples along the opened boundary. A path with an earlier mate copies its mate's samples.
-void sample_boundary(const SquareBoundary& boundary, GeometryImage& image) {
+void sample_boundary(const SquareBoundary& boundary, SquareGrid& image) {
     const uint32_t side = image.side, total = 4 * (side - 1);
     const Sideband& sideband = boundary.sideband;
     const uint32_t scale = (side - 1) / (sideband.node_side - 1);
@@ -92,8 +92,8 @@ std::vector<SurfacePoint> locate_samples(const Mesh& mesh, const std::vector<Vec
     return found;
 }
 
-GeometryImage sample_surface(const SquareBoundary& boundary, const std::vector<Vec2>& uv, uint32_t side) {
-    GeometryImage image{side, std::vector<Vec3>(size_t{side} * side, Vec3::Zero()), boundary.sideband};
+Result<SquareImage> sample_surface(const SquareBoundary& boundary, const std::vector<Vec2>& uv, uint32_t side) {
+    SquareGrid grid{side, std::vector<Vec3>(size_t{side} * side, Vec3::Zero())};
     const Mesh& mesh = boundary.opened.mesh;
     const std::vector<SurfacePoint> points = locate_samples(mesh, uv, side);
     for (size_t i = 0; i < points.size(); ++i) {
@@ -101,10 +101,10 @@ GeometryImage sample_surface(const SquareBoundary& boundary, const std::vector<V
         Vec3 p = Vec3::Zero();
         for (size_t k = 0; k < 3; ++k)
             p += points[i].barycentric[k] * mesh.positions[mesh.triangles[points[i].triangle][k]];
-        image.positions[i] = p;
+        grid.positions[i] = p;
     }
-    sample_boundary(boundary, image);
-    return image;
+    sample_boundary(boundary, grid);
+    return glue_square(std::move(grid), boundary.sideband);
 }
 
 }  // namespace gim

@@ -5,8 +5,9 @@
 
 #include <vector>
 
-#include "encoder/image/geometry_image.h"
+#include "encoder/base/result.h"
 #include "encoder/squares/boundary_map.h"
+#include "encoder/squares/square_image.h"
 
 namespace gim {
 
@@ -19,7 +20,8 @@ struct SurfacePoint {
 // The triangle of uv under every grid point of a side x side image, row-major. Cost O(F + side^2).
 std::vector<SurfacePoint> locate_samples(const Mesh& mesh, const std::vector<Vec2>& uv, uint32_t side);
 
-// One surface point per grid point. Samples of mates are bit-equal, cut-nodes are the mesh vertices themselves.
-GeometryImage sample_surface(const SquareBoundary& boundary, const std::vector<Vec2>& uv, uint32_t side);
+// One surface point per grid point. Samples of mates are bit-equal, cut-nodes are the mesh vertices themselves. Fails when
+// the node grid is finer than the image.
+Result<SquareImage> sample_surface(const SquareBoundary& boundary, const std::vector<Vec2>& uv, uint32_t side);
 
 }  // namespace gim

@@ -39,6 +39,20 @@ class [[nodiscard]] Result {
     std::variant<T, Error> state_;
 };
 
+// Success or an Error.
+template <>
+class [[nodiscard]] Result<void> {
+  public:
+    Result() = default;
+    Result(Error error) : error_(std::move(error)) {}
+
+    bool ok() const { return !error_; }
+    const Error& error() const { return *error_; }
+
+  private:
+    std::optional<Error> error_;
+};
+
 struct TextureImage {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;  // 3 * width * height, sRGB, row-major, top row first

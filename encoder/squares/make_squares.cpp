@@ -1,4 +1,4 @@
-#include "encoder/squares/square_images.h"
+#include "encoder/squares/make_squares.h"
 
 #include <algorithm>
 #include <bit>
@@ -59,8 +59,8 @@ void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& 
 
 }  // namespace
 
-Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                        const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
+Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                             const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
     std::vector<double> areas;
@@ -70,7 +70,7 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
     }
     const double largest = *std::max_element(areas.begin(), areas.end());
     const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
-    std::vector<GeometryImage> images;
+    std::vector<SquareImage> images;
     preferences.resize(parts.size());
     for (size_t k = 0; k < parts.size(); ++k) {
         const std::string prefix = parts.size() == 1 ? "" : "component-" + std::to_string(k) + "-";
@@ -92,7 +92,7 @@ Result<SquareImages> make_square_images(const Mesh& mesh, const EncodeOptions& o
         add_to_report(chart.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
         images.push_back(std::move(chart.value().image));
     }
-    return SquareImages{std::move(images), std::move(parts)};
+    return Squares{std::move(images), std::move(parts)};
 }
 
 }  // namespace gim

@@ -1,11 +1,12 @@
-#include "encoder/charts/encode_charts.h"
+#include "encoder/charts/make_charts.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
-#include "encoder/base/result.h"
 #include "encoder/charts/multi_chart.h"
-#include "encoder/charts/write_charts.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/snapshot.h"
 
@@ -16,9 +17,29 @@ namespace {
 // Coarser levels than this are never asked for: charts have too few samples long before.
 constexpr uint32_t kMostLevels = 8;
 
+// Packed charts, and the surface cut open between them.
+Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& packing) {
+    const double longer = std::max(packing.width, packing.height) - 1;
+    Mesh opened;
+    std::vector<std::array<uint32_t, 2>> cut;
+    std::vector<Vec2> uv;
+    for (size_t c = 0; c < atlas.charts.size(); ++c) {
+        const Chart& chart = atlas.charts[c];
+        const auto first = static_cast<uint32_t>(opened.positions.size());
+        for (size_t v = 0; v < chart.mesh.positions.size(); ++v) {
+            opened.positions.push_back(chart.mesh.positions[v]);
+            uv.push_back(packing.charts[c].chart.pose(atlas.maps[c].uv[v]) / longer);
+        }
+        for (const Triangle& t : chart.mesh.triangles)
+            opened.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        for (const auto& [a, b] : edges_of_loop(chart.loop)) cut.push_back({first + a, first + b});
+    }
+    return make_snapshot("charts", std::move(caption), opened, std::move(cut), uv);
+}
+
 }  // namespace
 
-Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
     MultiChartOptions chart_options;
     chart_options.charts = options.charts;
@@ -35,36 +56,17 @@ Result<ChartImages> make_charts(const Mesh& mesh, const EncodeOptions& options, 
         char caption[64];
         std::snprintf(caption, sizeof caption, "%zu charts, %.0f%% packed", multi_chart.atlas.charts.size(),
                       100 * multi_chart.packing_efficiency);
-        observer(make_snapshot("charts", caption, multi_chart.atlas, multi_chart.packing));
+        observer(show_packing(caption, multi_chart.atlas, multi_chart.packing));
         if (!multi_chart.sampled.empty()) {
-            MultiChartImage sampled = multi_chart.image;
+            GeometryImage sampled = multi_chart.image;
             sampled.positions = multi_chart.sampled;
             observer(make_snapshot("image-sampled", "sampled and zipped", sampled));
         }
         observer(make_snapshot("image-fitted", "fitted", multi_chart.image));
     }
     clock.begin(Stage::kSample);
-    return make_chart_images(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
+    return make_chart_levels(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
                              kMostLevels, options.threads);
-}
-
-CodingJob code_charts(const ChartImages& charts, EncodeReport& report) {
-    report.layout = Layout::kMcgim;
-    report.images = 1;
-    report.width = charts.image.width();
-    report.height = charts.image.height();
-    report.samples = charts.sample_count();
-    report.defined_samples = charts.defined_count();
-    report.charts = static_cast<uint32_t>(charts.charts.size());
-    report.cut_paths = static_cast<uint32_t>(charts.mates.size());
-    report.packing_efficiency = static_cast<double>(report.defined_samples) / static_cast<double>(report.samples);
-    CodingJob job;
-    job.make_writer = [&charts](const CodingParameters& parameters) -> Result<std::unique_ptr<FileWriter>> {
-        GIM_TRY(writer, ChartFileWriter::create(charts, parameters));
-        return std::unique_ptr<FileWriter>(new ChartFileWriter(std::move(writer)));
-    };
-    job.make_planes = [&charts](const PlaneMaker& maker) { return maker.make(charts.image); };
-    return job;
 }
 
 }  // namespace gim

@@ -1,0 +1,27 @@
+// The boundary of the library: threads are set, and nothing that is thrown leaves a public function.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include "gim/encoder.h"
+
+namespace gim {
+
+// Runs body on `threads` threads (0: all cores) and turns what it throws into an Error: nothing leaves a public function.
+template <class Body>
+Result<Encoded> guarded(uint32_t threads, const Body& body) {
+    try {
+        tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+        return arena.execute(body);
+    } catch (const std::bad_alloc&) {
+        return Error{Stage::kInput, "out of memory; take a smaller mesh or a smaller --size"};
+    } catch (const std::exception& e) {
+        return Error{Stage::kInput, std::string("internal error: ") + e.what()};
+    }
+}
+
+}  // namespace gim

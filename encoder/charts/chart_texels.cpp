@@ -1,0 +1,95 @@
+#include "encoder/charts/chart_texels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "encoder/code/extend_chart.h"
+#include "encoder/surface/stretch.h"
+#include "format/chart_table.h"
+#include "format/plane_code.h"
+
+namespace gim {
+
+namespace {
+
+constexpr int kRounds = 12;  // of the extension
+
+// A triangle of a cell with its corners in samples, relative to the cell's first.
+struct PlaneTriangle {
+    const GeometryImage& image;
+    const std::vector<Vec3>& outside;
+    Triangle samples;
+    std::array<Vec2, 3> corner;
+
+    // Nothing where the point lies outside. The test is exact: all coordinates are multiples of 2^-k.
+    std::optional<Texel> at(const Vec2& p) const {
+        const double area = twice_signed_area(corner[0], corner[1], corner[2]);
+        const std::array<double, 3> w{twice_signed_area(p, corner[1], corner[2]) / area,
+                                      twice_signed_area(corner[0], p, corner[2]) / area,
+                                      twice_signed_area(corner[0], corner[1], p) / area};
+        if (std::min({w[0], w[1], w[2]}) < 0) return std::nullopt;
+        Texel texel;
+        for (size_t k = 0; k < 3; ++k) {
+            const Vec3 &here = image.positions[samples[k]], &next = image.positions[samples[(k + 1) % 3]];
+            texel.position += w[k] * here;
+            texel.outside += w[k] * outside[samples[k]];
+            texel.spacing = std::max(texel.spacing, (here - next).norm());
+        }
+        texel.outside = unit_or_zero(texel.outside);
+        return texel;
+    }
+};
+
+}  // namespace
+
+uint8_t chart_plane_exponent(const GeometryImage& image, uint32_t side) {
+    const double per_sample = side / std::sqrt(double(image.width()) * image.height());
+    return static_cast<uint8_t>(
+        std::clamp(std::lround(std::log2(per_sample)), 0l, static_cast<long>(kMaxTexelExponent)));
+}
+
+TexelGrid chart_texels(const GeometryImage& image, uint8_t exponent) {
+    const uint32_t width = image.width(), per_sample = 1u << exponent;
+    const std::vector<Vec3> outside = outside_directions(image);
+    TexelGrid grid;
+    grid.columns = static_cast<uint32_t>(chart_plane_side(width, exponent));
+    grid.rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
+    std::vector<bool> taken(size_t{grid.columns} * grid.rows, false);
+    for (uint32_t cell = 0; cell < image.gluing.kind.size(); ++cell) {
+        const uint32_t row = cell / (width - 1), column = cell % (width - 1);
+        const CellTriangles all = cell_triangles(image.positions, image.gluing, cell);
+        for (uint32_t k = 0; k < all.count; ++k) {
+            PlaneTriangle triangle{image, outside, all.triangles[k], {}};
+            for (size_t c = 0; c < 3; ++c) {
+                const uint32_t sample = triangle.samples[c];
+                triangle.corner[c] = Vec2(sample % width - column, sample / width - row);
+            }
+            for (uint32_t i = 0; i <= per_sample; ++i) {
+                for (uint32_t j = 0; j <= per_sample; ++j) {
+                    const uint32_t index = (row * per_sample + i) * grid.columns + column * per_sample + j;
+                    if (taken[index]) continue;
+                    auto texel = triangle.at(Vec2(j, i) / per_sample);
+                    if (!texel) continue;
+                    taken[index] = true;
+                    texel->index = index;
+                    grid.texels.push_back(*texel);
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+Pyramid<float> analyse_chart_plane(const TexelGrid& grid, std::vector<float> values, float quantizer) {
+    std::vector<uint8_t> defined(size_t{grid.columns} * grid.rows, 0);
+    for (const Texel& texel : grid.texels) defined[texel.index] = 1;
+    const uint32_t steps = halvings(grid.columns, grid.rows);
+    values =
+        extend_chart<Irreversible97>(std::move(values), defined, grid.columns, grid.rows, steps, quantizer, kRounds);
+    return analyse<Irreversible97>(std::move(values), grid.columns, grid.rows, steps);
+}
+
+}  // namespace gim

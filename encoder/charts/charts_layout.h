@@ -1,0 +1,13 @@
+// The layout mcgim for the drivers: packed charts, ready to be coded.
+#pragma once
+
+#include <memory>
+
+#include "encoder/charts/chart_levels.h"
+#include "encoder/layout/layout_images.h"
+
+namespace gim {
+
+std::unique_ptr<LayoutImages> charts_layout(ChartLevels charts);
+
+}  // namespace gim

@@ -1,0 +1,56 @@
+#include "encoder/check_options.h"
+
+#include <string>
+
+#include "format/chart_table.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kLeastSide = 5, kMostSide = 8193, kMostPlaneSide = 4097;
+
+}  // namespace
+
+Result<void> check_options(const EncodeOptions& options) {
+    const auto is_grid = [](uint32_t side) {
+        return side >= kLeastSide && side <= kMostSide && ((side - 1) & (side - 2)) == 0;
+    };
+    const auto wrong = [](const std::string& what) { return Error{Stage::kInput, what}; };
+    if (!is_grid(options.side))
+        return wrong("the size must be 2^j + 1, from 5 to 8193 (257, 513, ...); not " + std::to_string(options.side));
+    if (!is_grid(options.node_side) || options.node_side > options.side) {
+        return wrong("the node grid must be 2^j + 1, from 5 to the size; not " + std::to_string(options.node_side));
+    }
+    if (options.bits < 8 || options.bits > 20)
+        return wrong("the bits must be from 8 to 20; not " + std::to_string(options.bits));
+    const auto is_plane = [](uint32_t side) {
+        return side == 0 || (side >= kLeastSide && side <= kMostPlaneSide && ((side - 1) & (side - 2)) == 0);
+    };
+    if (!is_plane(options.normal_side) || !is_plane(options.color_side.value_or(0)))
+        return wrong("the sides of normal map and colours must be 2^j + 1, from 5 to 4097 (257, 513, ...), or 0");
+    if (options.plane_quality && !(*options.plane_quality >= 0 && *options.plane_quality <= 100))
+        return wrong("the quality of normal map and colours must be from 0 to 100");
+    const double value = options.rate.value;
+    switch (options.rate.kind) {
+        case RateTarget::Kind::kQuality:
+            if (!(value >= 0 && value <= 100)) return wrong("the quality must be from 0 to 100");
+            break;
+        case RateTarget::Kind::kPsnr:
+            if (!(value > 0 && value <= 200)) return wrong("the PSNR must be above 0 and at most 200 dB");
+            break;
+        case RateTarget::Kind::kBytes:
+            if (!(value >= 1)) return wrong("the number of bytes must be at least 1");
+            break;
+        case RateTarget::Kind::kLossless:
+            break;
+    }
+    if (options.layout == Layout::kTiles) return wrong("the layout tiles is not there yet; take gim, mcgim or auto");
+    if (options.samples < 1000 || options.samples > (1u << 26))
+        return wrong("the samples must be from 1000 to 67108864; not " + std::to_string(options.samples));
+    if (options.charts > kMaxCharts)
+        return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));
+    return {};
+}
+
+}  // namespace gim

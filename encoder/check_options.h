@@ -1,0 +1,12 @@
+// The ranges of EncodeOptions.
+#pragma once
+
+#include "encoder/base/result.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// An Error names the option and what it may be.
+Result<void> check_options(const EncodeOptions& options);
+
+}  // namespace gim

@@ -1,0 +1,41 @@
+#include "encoder/code/file_writer.h"
+
+#include <utility>
+
+#include "encoder/code/code_bands.h"
+#include "encoder/code/file_units.h"
+
+namespace gim {
+
+FileWriter::FileWriter(std::unique_ptr<LevelCoder> coder, const CodingParameters& parameters)
+    : coder_(std::move(coder)), planes_(parameters.planes), text_(parameters.text) {
+    seams_ = coder_->seam_payload();
+    if (parameters.level_psnr) level_psnr_.assign(coder_->header().level_count, 0);
+}
+
+Header FileWriter::header(double quantizer) const {
+    Header header = coder_->header();
+    header.level_psnr = level_psnr_;
+    if (header.coding == Coding::kLossy) header.quantizer = quantizer_in_range(quantizer);
+    return header;
+}
+
+std::vector<uint8_t> FileWriter::write(double quantizer) const {
+    const Header header = this->header(quantizer);
+    return assemble_file(header, seams_, coder_->code_levels(header), planes_, text_);
+}
+
+Pyramid<int32_t> ImageBands::quantized(size_t image, const Header& header, const SeamTable* seams) const {
+    if (header.coding == Coding::kLossless) return lossless[image];
+    return quantize_bands(lossy[image], detail_coding_of(header), seams).bands;
+}
+
+std::string bits_complaint(uint32_t bits) {
+    return bits < kMinBits || bits > kMaxBits ? "bits " + std::to_string(bits) + ": choose 8 to 20" : std::string();
+}
+
+bool is_codable(const Vec3& position) {
+    return position.allFinite() && position.cwiseAbs().maxCoeff() <= double{kMaxOrigin};
+}
+
+}  // namespace gim

@@ -1,0 +1,42 @@
+#include "encoder/code/rate_target.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gim {
+
+namespace {
+
+using Values = RateSearchValues;
+
+double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((75 - quality) / 10 + int(bits) - 12); }
+
+// Into the range that searches cover.
+double clamped_quantizer(double quantizer) {
+    return std::clamp(quantizer, std::exp2(Values::kFinest), std::exp2(Values::kCoarsest));
+}
+
+}  // namespace
+
+bool is_searched(const RateTarget& target) {
+    return target.kind == RateTarget::Kind::kPsnr || target.kind == RateTarget::Kind::kBytes;
+}
+
+double octaves_to(const RateTarget& target, double bytes, double psnr) {
+    return target.kind == RateTarget::Kind::kBytes ? std::log(bytes / target.value) / std::log(Values::kBytesPerOctave)
+                                                   : (psnr - target.value) / Values::kDecibelPerOctave;
+}
+
+double coarser_quantizer(double quantizer, double octaves, double most) {
+    return clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -most, most)));
+}
+
+// Scanned surfaces have 68 dB at 16 steps of a 12-bit quantizer.
+double first_quantizer(const RateTarget& target, uint32_t bits) {
+    const double of_12_bits = std::exp2(int(bits) - 12);
+    if (target.kind == RateTarget::Kind::kPsnr)
+        return clamped_quantizer(16 * of_12_bits * std::exp2((68 - target.value) / Values::kDecibelPerOctave));
+    return clamped_quantizer(quality_quantizer(target.kind == RateTarget::Kind::kQuality ? target.value : 75, bits));
+}
+
+}  // namespace gim

@@ -1,0 +1,55 @@
+#include "encoder/code_to_file.h"
+
+#include <utility>
+#include <vector>
+
+#include "encoder/code/assemble_file.h"
+#include "encoder/code/decode_surface.h"
+#include "encoder/code/level_report.h"
+#include "encoder/planes/make_planes.h"
+#include "encoder/rate_search.h"
+#include "encoder/surface/compare_meshes.h"
+
+namespace gim {
+
+Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
+                             const EncodeOptions& options, StageClock& clock, EncodeReport report) {
+    Encoded encoded{{}, std::move(report)};
+    images.describe(encoded.report);
+    const ReferenceSurface surface(std::move(reference), options.threads);
+    CompareOptions compare_options;
+    compare_options.threads = options.threads;
+    compare_options.normals = true;
+
+    CodingParameters parameters;
+    const PlaneMaker plane_maker(surface.mesh(), input, options);
+    if (plane_maker.wants_any()) {
+        clock.begin(Stage::kPlanes);
+        parameters.planes = plane_maker.make(images);
+    }
+
+    clock.begin(Stage::kCode);
+    parameters.bits = options.bits;
+    parameters.base_side = options.node_side;
+    parameters.level_psnr = true;
+    GIM_TRY(bytes, search_rate(images, parameters, options, surface, clock));
+    encoded.bytes = std::move(bytes);
+
+    clock.begin(Stage::kCompare);
+    GIM_TRY(comparison, compare_file(encoded.bytes, surface, compare_options));
+    encoded.report.error = comparison;
+    GIM_TRY(levels, measure_levels(encoded.bytes, surface, comparison, options.threads));
+    encoded.report.levels = std::move(levels);
+    GIM_TRY(info, read_own_info(encoded.bytes));
+    encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, info.level_count));
+    GIM_TRY(planes, plane_maker.measure(encoded.bytes));
+    encoded.report.planes = std::move(planes);
+    clock.end();
+
+    describe_file(encoded.bytes, encoded.report);
+    encoded.report.times = clock.times();
+    encoded.report.seconds = clock.seconds();
+    return encoded;
+}
+
+}  // namespace gim

@@ -1,0 +1,63 @@
+#include "encoder/layouts.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "encoder/charts/charts_layout.h"
+#include "encoder/charts/make_charts.h"
+#include "encoder/charts/multi_chart.h"
+#include "encoder/squares/squares_layout.h"
+
+namespace gim {
+
+namespace {
+
+using Made = Result<std::unique_ptr<LayoutImages>>;
+
+Made squares_of(const MakeImages& in) {
+    GIM_TRY(squares, make_squares(in.mesh, in.options, in.clock, in.observer, in.report, in.cuts));
+    return squares_layout(std::move(squares), in.options);
+}
+
+Made charts_of(const MakeImages& in) {
+    GIM_TRY(charts, make_charts(in.mesh, in.options, in.clock, in.observer, in.report));
+    return charts_layout(std::move(charts));
+}
+
+double efficiency_of_squares(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
+    EncodeOptions options = asked;
+    options.fit = FitStrength::kOff;
+    options.density = false;
+    options.rate = {};
+    EncodeReport report;
+    CutPreferences preferences;
+    return make_squares(mesh, options, clock, {}, report, preferences).ok() ? report.stretch_efficiency : 0;
+}
+
+double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+    MultiChartOptions quick;
+    quick.charts = options.charts;
+    quick.samples = options.samples;
+    quick.seed = options.seed;
+    quick.threads = options.threads;
+    quick.fit = std::nullopt;
+    const auto charts = make_multi_chart_image(mesh, quick, clock);
+    return charts.ok() ? charts.value().stretch_efficiency * charts.value().packing_efficiency : 0;
+}
+
+constexpr std::array<LayoutEntry, 2> kLayouts = {
+    {{Layout::kGim, squares_of, efficiency_of_squares}, {Layout::kMcgim, charts_of, efficiency_of_charts}}};
+
+}  // namespace
+
+std::span<const LayoutEntry> all_layouts() { return kLayouts; }
+
+const LayoutEntry* find_layout(Layout layout) {
+    const auto* found = std::find_if(kLayouts.begin(), kLayouts.end(),
+                                     [&](const LayoutEntry& entry) { return entry.layout == layout; });
+    return found == kLayouts.end() ? nullptr : found;
+}
+
+}  // namespace gim

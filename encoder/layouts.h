@@ -1,0 +1,39 @@
+// The layouts that the encoder knows, in one table.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "encoder/base/result.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/layout/layout_images.h"
+#include "encoder/squares/make_squares.h"
+#include "encoder/surface/mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct MakeImages {
+    const Mesh& mesh;  // clean
+    const EncodeOptions& options;
+    StageClock& clock;
+    const Observer& observer;
+    EncodeReport& report;  // gets the figures of the stages
+    CutPreferences& cuts;  // of squares: empty, or chosen by an earlier call
+};
+
+struct LayoutEntry {
+    Layout layout;
+    // All stages from the clean mesh to images that are ready to be coded.
+    Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
+    // Effective samples per sample; 0 where the layout cannot take the mesh. For --layout auto.
+    double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
+};
+
+// In the order in which --layout auto prefers them for lossy files.
+std::span<const LayoutEntry> all_layouts();
+
+// layout: not kAuto. Null where the encoder does not know it.
+const LayoutEntry* find_layout(Layout layout);
+
+}  // namespace gim

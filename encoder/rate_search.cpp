@@ -1,0 +1,241 @@
+#include "encoder/rate_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "encoder/code/decode_surface.h"
+#include "encoder/code/rate_target.h"
+
+namespace gim {
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+using Values = RateSearchValues;
+
+// PSNR, in dB, of the surface that a file decodes to. Must be the same for the same bytes.
+using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
+
+std::string decimal(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
+    double fine = Values::kFinest - 1,
+           coarse = Values::kCoarsest + 1;  // judged good enough / too coarse so far, as logarithms
+    double fine_psnr = 0, coarse_psnr = 0, best_psnr = 0;
+    Bytes best;
+    double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
+    for (int i = 0; i < Values::kMostFiles; ++i) {
+        Bytes bytes = writer.write(std::exp2(at));
+        GIM_TRY(psnr, judge(bytes));
+        best_psnr = std::max(best_psnr, psnr);
+        if (psnr >= target) {
+            best = std::move(bytes);
+            fine = at, fine_psnr = psnr;
+            if (psnr <= target + Values::kPsnrSlack || at >= Values::kCoarsest) break;
+        } else {
+            coarse = at, coarse_psnr = psnr;
+            if (at <= Values::kFinest) break;
+        }
+        const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
+        if (bracketed && coarse - fine < 1e-3) break;
+        if (bracketed) {
+            // Aim a little above the target, and never too near to either end.
+            const double aim = target + 0.4 * Values::kPsnrSlack;
+            const double part = std::clamp((fine_psnr - aim) / (fine_psnr - coarse_psnr), 0.1, 0.9);
+            at = fine + part * (coarse - fine);
+        } else {
+            const double step = (psnr - target) / Values::kPlainDecibelPerOctave;
+            at = std::clamp(at + (step >= 0 ? std::max(step, 0.05) : std::min(1.3 * step, -0.1)), Values::kFinest,
+                            Values::kCoarsest);
+        }
+    }
+    if (best.empty()) {
+        return Error{Stage::kCode, decimal(target) + " dB is out of reach: the samples themselves reach " +
+                                       decimal(best_psnr) + " dB; take a larger --size, or ask for less"};
+    }
+    return best;
+}
+
+Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
+    double fine = Values::kFinest - 1,
+           coarse = Values::kCoarsest + 1;  // too large / small enough so far, as logarithms
+    Bytes best;
+    size_t smallest = SIZE_MAX;
+    double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
+    for (int i = 0; i < 2 * Values::kMostFiles; ++i) {
+        Bytes bytes = writer.write(std::exp2(at));
+        smallest = std::min(smallest, bytes.size());
+        const auto size = static_cast<double>(bytes.size());
+        if (size <= budget) {
+            coarse = at;
+            best = std::move(bytes);
+            if (size >= (1 - Values::kBytesSlack) * budget || at <= Values::kFinest) break;
+        } else {
+            fine = at;
+            if (at >= Values::kCoarsest) break;
+        }
+        const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
+        if (bracketed && coarse - fine < 1e-4) break;
+        at = bracketed ? 0.5 * (fine + coarse)
+                       : std::clamp(at + (size <= budget ? -2.0 : 2.0), Values::kFinest, Values::kCoarsest);
+    }
+    if (best.empty()) {
+        return Error{Stage::kCode, std::to_string(static_cast<uint64_t>(budget)) +
+                                       " bytes are too few: the smallest file of this size of image has " +
+                                       std::to_string(smallest) + "; take a smaller --size, or allow more"};
+    }
+    return best;
+}
+
+Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateTarget& target, const JudgeFile& judge) {
+    switch (target.kind) {
+        case RateTarget::Kind::kLossless:
+        case RateTarget::Kind::kQuality:
+            return writer.write(first);
+        case RateTarget::Kind::kPsnr:
+            return search_psnr(writer, std::log2(first), target.value, judge);
+        case RateTarget::Kind::kBytes:
+            return search_bytes(writer, std::log2(first), target.value);
+    }
+    return Error{Stage::kCode, "unknown rate target"};
+}
+
+// From a rate target to the file that meets it.
+class RateSearch {
+  public:
+    RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
+               const ReferenceSurface& reference, StageClock& clock)
+        : images_(images),
+          parameters_(std::move(parameters)),
+          target_(options.rate),
+          reference_(reference),
+          clock_(clock) {
+        parameters_.lossless = target_.kind == RateTarget::Kind::kLossless;
+        quick_.threads = full_.threads = options.threads;
+        quick_.samples = Values::kSearchSamples;
+    }
+
+    Result<Bytes> run(double quantizer) {
+        if (!images_.is_fitted_to_quantizer()) return search(quantizer);
+        if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
+        GIM_TRY(nearer, approach(quantizer));
+        return fit_to_target(nearer);
+    }
+
+  private:
+    // Continues the last fit. Restarts if that one was coarser, because dropped details may not come back.
+    Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {
+        if (quantizer < fitted_to_ * std::exp2(-Values::kNear)) images_.restart_fit();
+        fitted_to_ = parameters_.quantizer = quantizer;
+        images_.fit(parameters_, effort, clock_);
+        GIM_TRY(writer, images_.writer(parameters_));
+        return writer.write(quantizer);
+    }
+
+    double slack_in_octaves() const {
+        return target_.kind == RateTarget::Kind::kPsnr ? Values::kFittedPsnrSlack / Values::kDecibelPerOctave
+                                                       : Values::kFittedBytesSlack / std::log(Values::kBytesPerOctave);
+    }
+
+    // How much coarser the quantizer might be, in octaves, for the target and a part of the slack to be met.
+    Result<double> room(const Bytes& bytes) const {
+        RateTarget wanted = target_;
+        if (target_.kind == RateTarget::Kind::kBytes) {
+            wanted.value *= 1 - Values::kFittedBytesSlack / 2;
+            return octaves_to(wanted, double(bytes.size()), 0);
+        }
+        wanted.value += Values::kFittedPsnrSlack / 2;
+        GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
+        return octaves_to(wanted, 0, comparison.psnr);
+    }
+
+    // By quick fits.
+    Result<double> approach(double quantizer) {
+        for (int k = 0; k < Values::kMostApproaches; ++k) {
+            GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
+            GIM_TRY(octaves, room(bytes));
+            quantizer = coarser_quantizer(quantizer, octaves, Values::kMostStep);
+            if (std::abs(octaves) < Values::kNear) break;
+        }
+        return quantizer;
+    }
+
+    // Every file is coded with the quantizer that it is fitted to: with one that is a tenth of an octave finer it would be
+    // larger and farther from the surface. So fits go on until one meets the target, and the best of those is taken.
+    Result<Bytes> fit_to_target(double quantizer) {
+        Bytes best;
+        double final_for = 0;  // what the last final fit was for
+        for (int k = 0; k < Values::kMostFits; ++k) {
+            const bool is_far = k == 0 || std::abs(std::log2(quantizer / final_for)) > Values::kNear;
+            if (is_far) final_for = quantizer;
+            GIM_TRY(bytes, fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust));
+            GIM_TRY(octaves, room(bytes));
+            GIM_TRY(is_met, meets_target(bytes));
+            if (is_met && is_better(bytes, best)) best = std::move(bytes);
+            if (is_met && std::abs(octaves) <= slack_in_octaves() / 2) return best;
+            const double next = coarser_quantizer(quantizer, octaves, Values::kMostFinalStep);
+            if (next == quantizer) break;
+            quantizer = next;
+        }
+        if (!best.empty()) return best;
+        return search(quantizer);
+    }
+
+    Result<bool> meets_target(const Bytes& bytes) const {
+        if (target_.kind == RateTarget::Kind::kBytes) return double(bytes.size()) <= target_.value;
+        GIM_TRY(comparison, compare_file(bytes, reference_, full_));
+        return comparison.psnr >= target_.value;
+    }
+
+    bool is_better(const Bytes& bytes, const Bytes& best) const {
+        if (best.empty()) return true;
+        return target_.kind == RateTarget::Kind::kBytes ? bytes.size() > best.size() : bytes.size() < best.size();
+    }
+
+    // Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
+    Result<Bytes> search(double quantizer) const {
+        CodingParameters parameters = parameters_;
+        parameters.quantizer = quantizer;
+        GIM_TRY(writer, images_.writer(parameters));
+        const JudgeFile judge = [&](std::span<const uint8_t> bytes) -> Result<double> {
+            GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
+            return comparison.psnr;
+        };
+        RateTarget target = target_;
+        for (int attempt = 0;; ++attempt) {
+            GIM_TRY(bytes, code_to_target(writer, quantizer, target, judge));
+            if (target.kind != RateTarget::Kind::kPsnr) return bytes;
+            GIM_TRY(comparison, compare_file(bytes, reference_, full_));
+            const double missing = target_.value - comparison.psnr;
+            if (missing <= 0 || attempt == Values::kMostAttempts) return bytes;
+            target.value += missing + Values::kPsnrBeyond;
+        }
+    }
+
+    LayoutImages& images_;
+    CodingParameters parameters_;
+    double fitted_to_ = 0;  // quantizer of the last fit
+    const RateTarget target_;
+    const ReferenceSurface& reference_;
+    StageClock& clock_;
+    CompareOptions quick_, full_;
+};
+
+}  // namespace
+
+Result<Bytes> search_rate(LayoutImages& images, const CodingParameters& parameters, const EncodeOptions& options,
+                          const ReferenceSurface& reference, StageClock& clock) {
+    RateSearch search(images, parameters, options, reference, clock);
+    return search.run(first_quantizer(options.rate, options.bits));
+}
+
+}  // namespace gim

@@ -1,0 +1,58 @@
+#include "encoder/squares/best_side.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "encoder/code/rate_target.h"
+
+namespace gim {
+
+namespace {
+
+bool is_better(const Encoded& a, const Encoded& b, const RateTarget& rate) {
+    return rate.kind == RateTarget::Kind::kBytes ? a.report.error.psnr > b.report.error.psnr
+                                                 : a.bytes.size() < b.bytes.size();
+}
+
+EncodeOptions halved(EncodeOptions options) {
+    options.side = (options.side - 1) / 2 + 1;
+    options.node_side = std::min(options.node_side, options.side);
+    return options;
+}
+
+bool may_halve(const EncodeOptions& options) {
+    const bool is_fine =
+        options.rate.kind == RateTarget::Kind::kPsnr && options.rate.value > RateSearchValues::kMostPsnrOfSmallerSides;
+    return options.layout == Layout::kGim && options.try_smaller_sides &&
+           options.side >= RateSearchValues::kLeastSideToHalve && is_searched(options.rate) && !is_fine;
+}
+
+}  // namespace
+
+Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& whole, const StageClock& clock,
+                              const Observer& observer) {
+    if (!may_halve(whole)) return run(whole, observer);
+    const auto improves = [&](const Result<Encoded>& now, const Result<Encoded>& best) {
+        return now.ok() && (!best.ok() || is_better(now.value(), best.value(), whole.rate));
+    };
+    EncodeOptions options = halved(whole);
+    auto best = run(options, observer);
+    auto of_whole = run(whole, {});
+    if (!best.ok() || improves(of_whole, best)) {
+        best = std::move(of_whole);
+    } else {
+        while (options.side >= RateSearchValues::kLeastSideToHalve) {
+            options = halved(options);
+            auto half = run(options, {});
+            if (!improves(half, best)) break;
+            best = std::move(half);
+        }
+    }
+    if (best.ok()) {
+        best.value().report.times = clock.times();
+        best.value().report.seconds = clock.seconds();
+    }
+    return best;
+}
+
+}  // namespace gim

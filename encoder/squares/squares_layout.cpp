@@ -1,0 +1,92 @@
+#include "encoder/squares/squares_layout.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "encoder/code/file_units.h"
+#include "encoder/squares/square_texels.h"
+#include "encoder/squares/write_squares.h"
+#include "format/sideband_code.h"
+
+namespace gim {
+
+namespace {
+
+class SquaresLayout final : public LayoutImages {
+  public:
+    SquaresLayout(Squares squares, const EncodeOptions& options)
+        : squares_(std::move(squares)),
+          seed_(options.seed),
+          is_lossy_fit_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {}
+
+    void describe(EncodeReport& report) const override {
+        report.layout = Layout::kGim;
+        report.images = static_cast<uint32_t>(squares_.images.size());
+        for (const SquareImage& image : squares_.images) {
+            if (image.side() > report.side) report.node_side = image.sideband.node_side;
+            report.side = std::max(report.side, image.side());
+            report.samples += image.positions.size();
+            report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
+        }
+        report.width = report.height = report.side;
+    }
+
+    bool is_fitted_to_quantizer() const override { return is_lossy_fit_; }
+
+    void fit(const CodingParameters& parameters, CodedFit::Effort effort, StageClock& clock) override {
+        clock.begin(Stage::kFit);
+        make_fits();
+        if (!units_) units_ = units_of(squares_.images, parameters.bits);
+        Units units = *units_;
+        units.quantizer = quantizer_in_range(parameters.quantizer);
+        for (size_t i = 0; i < fits_.size(); ++i)
+            squares_.images[i].positions = fits_[i].run(units, effort, clock.progress());
+        clock.begin(Stage::kCode);
+    }
+
+    void restart_fit() override {
+        for (CodedFit& fit : fits_) fit.restart();
+    }
+
+    Result<FileWriter> writer(const CodingParameters& parameters) const override {
+        CodingParameters with_units = parameters;
+        with_units.units = units_;
+        return squares_writer(squares_.images, with_units);
+    }
+
+    std::vector<uint8_t> plane_exponents(uint32_t side) const override {
+        return square_plane_exponents(squares_.images, side);
+    }
+    TexelGrid texel_grid(size_t image, uint8_t exponent) const override {
+        return square_texels(squares_.images[image], (1u << exponent) + 1);
+    }
+    Pyramid<float> analyse_plane(size_t image, const TexelGrid& grid, std::vector<float> values, float) const override {
+        equalize_ring(squares_.images[image].sideband, grid.columns, values);
+        return analyse<Irreversible97>(std::move(values), grid.columns);
+    }
+
+  private:
+    void make_fits() {
+        for (size_t i = fits_.size(); i < squares_.images.size(); ++i) {
+            fits_.emplace_back(squares_.images[i], file_seams(squares_.images[i]), squares_.surfaces[i], seed_);
+            squares_.surfaces[i] = {};  // the fit has its own
+        }
+    }
+
+    Squares squares_;
+    uint64_t seed_;
+    bool is_lossy_fit_;
+    std::vector<CodedFit> fits_;  // one per image, made when needed
+    std::optional<Units> units_;  // of the first fit: what is fitted to a quantizer must meet the same steps again
+};
+
+}  // namespace
+
+std::unique_ptr<LayoutImages> squares_layout(Squares squares, const EncodeOptions& options) {
+    return std::make_unique<SquaresLayout>(std::move(squares), options);
+}
+
+}  // namespace gim
