@@ -49,20 +49,8 @@ struct EncodeArguments {
     std::optional<double> plane_quality;
 };
 
-void add_encode(CLI::App& app, EncodeArguments& a) {
-    CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
-    sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension. It must be an\n"
-        "orientable surface without non-manifold edges; duplicates are welded and degenerate faces removed first.\n"
-        "Each connected component becomes an image of its own in the file.\n"
-        "A headerless geometry image (planar float32 x, y, z; side from the size) named *.gim is imported as it is.\n"
-        "At most one of --lossless, --psnr, --bytes and --quality; without any, --quality 75.\n\n"
-        "  gim encode bunny.ply bunny.gim\n"
-        "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
-        "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
-        "  gim encode bunny.ply bunny.gim --size 129 --normals 512");
-    sub->add_option("MESH", a.command.input, "Mesh to read")->required();
-    sub->add_option("OUT", a.command.output, ".gim file to write")->required();
+// Options of an image: its layout, its size, what its samples are.
+void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
     sub->add_option("--layout", a.command.options.layout,
@@ -91,6 +79,9 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
         ->check(CLI::Range(8, 20))
         ->capture_default_str();
+}
+
+void add_rate_options(CLI::App* sub, EncodeArguments& a) {
     CLI::Option_group* rate = sub->add_option_group("rate", "How many bytes the samples may take (at most one)");
     rate->require_option(0, 1);
     rate->add_flag("--lossless", a.lossless, "Keep the quantized image exactly");
@@ -99,6 +90,9 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
     rate->add_option("--quality", a.quality, "0 (smallest) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
+}
+
+void add_fit_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, FitStrength> fits = {{"auto", FitStrength::kAuto},
                                                             {"none", FitStrength::kOff},
                                                             {"stiff", FitStrength::kStiff},
@@ -111,6 +105,9 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         ->type_name("auto|none|stiff|loose")
         ->default_str("auto");
     sub->add_flag("--even", a.even, "Spread samples evenly, not denser where the surface curves");
+}
+
+void add_plane_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option("--normals", a.normals, "Side of a normal map of the input, rounded up to 2^j+1; 0: none")
         ->check(CLI::Range(0, 4097))
         ->type_name("N");
@@ -125,6 +122,26 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
            "Quality of normal map and colours, as --quality; without it that of --quality, or 90 for --lossless "
            "(they are lossy all the same)")
         ->check(finite_range(0, 100, "Q"));
+}
+
+void add_encode(CLI::App& app, EncodeArguments& a) {
+    CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
+    sub->footer(
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension. It must be an\n"
+        "orientable surface without non-manifold edges; duplicates are welded and degenerate faces removed first.\n"
+        "Each connected component becomes an image of its own in the file.\n"
+        "A headerless geometry image (planar float32 x, y, z; side from the size) named *.gim is imported as it is.\n"
+        "At most one of --lossless, --psnr, --bytes and --quality; without any, --quality 75.\n\n"
+        "  gim encode bunny.ply bunny.gim\n"
+        "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
+        "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
+        "  gim encode bunny.ply bunny.gim --size 129 --normals 512");
+    sub->add_option("MESH", a.command.input, "Mesh to read")->required();
+    sub->add_option("OUT", a.command.output, ".gim file to write")->required();
+    add_image_options(sub, a);
+    add_rate_options(sub, a);
+    add_fit_options(sub, a);
+    add_plane_options(sub, a);
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     sub->add_option("--threads", a.command.options.threads, "0: all cores; the bytes do not depend on it")
         ->check(CLI::Range(0, 1024))

@@ -299,104 +299,160 @@ void add_textures(const Header& header, const std::vector<std::array<float, 2>>&
     }
 }
 
+// Which properties of an element the mesh takes.
+struct Columns {
+    bool is_vertex = false, is_face = false, is_strip = false;
+    bool has_position = false, has_colors = false, has_texcoords = false;  // of vertices
+    std::vector<Role> roles;                                               // per property; kNone for lists
+};
+
+Columns columns_of(const Element& element, bool wants_colors) {
+    Columns columns;
+    columns.is_vertex = element.name == "vertex";
+    columns.is_face = element.name == "face";
+    columns.is_strip = element.name == "tristrips";
+    for (const Property& property : element.properties) {
+        const bool may_have_role = property.count_type == Scalar::kNone && (columns.is_vertex || columns.is_face);
+        columns.roles.push_back(may_have_role ? role_of(property.name, columns.is_vertex, wants_colors) : Role::kNone);
+    }
+    if (!columns.is_vertex) return columns;
+    columns.has_position = has_roles(columns.roles, {Role::kX, Role::kY, Role::kZ});
+    columns.has_colors = has_roles(columns.roles, {Role::kRed, Role::kGreen, Role::kBlue});
+    columns.has_texcoords = has_roles(columns.roles, {Role::kU, Role::kV});
+    return columns;
+}
+
+// Reads the body, element by element, into a soup.
+class Reader {
+  public:
+    // textures: null if colours are not wanted.
+    Reader(const Header& header, std::string_view body, Textures* textures)
+        : header_(header), body_(body, header.encoding), textures_(textures) {}
+
+    std::optional<Error> read_element(const Element& element) {
+        const Columns columns = columns_of(element, textures_ != nullptr);
+        if (columns.is_vertex) {
+            soup_.positions.reserve(element.count);
+            has_coordinates_ = columns.has_position;
+        }
+        for (uint64_t record = 0; record < element.count; ++record) {
+            if (!read_record(element, columns)) {
+                return Error{Stage::kInput, "it ends, or has something that is no number, inside '" +
+                                                std::string(element.name.substr(0, 40)) + "' " +
+                                                std::to_string(record) + " of " + std::to_string(element.count) +
+                                                " (is the file cut short?)"};
+            }
+            if (columns.is_vertex) keep_vertex(columns);
+            if (columns.is_face && !header_.textures.empty() && textures_) keep_face_texture();
+        }
+        return std::nullopt;
+    }
+
+    Result<TriangleMesh> mesh() && {
+        if (!has_coordinates_) return Error{Stage::kInput, "its header names no vertices with x, y and z"};
+        if (!textures_) return triangulate(std::move(soup_));
+        if (soup_.sizes.size() == face_texture_.size())
+            add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
+        if (soup_.vertex_colors.size() != soup_.positions.size()) soup_.vertex_colors.clear();
+        return triangulate(std::move(soup_), std::move(textures_->images));
+    }
+
+  private:
+    // False where the body ends.
+    bool read_record(const Element& element, const Columns& columns) {
+        values_.fill(0);
+        list_.clear();
+        texcoords_.clear();
+        for (size_t p = 0; p < element.properties.size(); ++p) {
+            const Property& property = element.properties[p];
+            if (property.count_type == Scalar::kNone) {
+                const Role role = columns.roles[p];
+                const double value = body_.next(property.type);
+                const bool is_color = role >= Role::kRed && role <= Role::kBlue;
+                values_[static_cast<size_t>(role)] =
+                    is_color ? static_cast<double>(channel(value, property.type)) : value;
+            } else {
+                read_list(property, columns);
+                if (body_.failed) return false;
+            }
+        }
+        return !body_.failed;
+    }
+
+    void read_list(const Property& property, const Columns& columns) {
+        const size_t length = body_.next_length(property);
+        const bool is_corners = (columns.is_face || columns.is_strip) &&
+                                (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool is_texcoord = textures_ && columns.is_face && property.name == "texcoord";
+        if (is_corners) list_.clear();
+        for (size_t i = 0; i < length; ++i) {
+            const double value = body_.next(property.type);
+            if (is_corners) list_.push_back(as_index(value));
+            if (is_texcoord) texcoords_.push_back(static_cast<float>(value));
+        }
+        if (body_.failed || !is_corners) return;
+        if (columns.is_face) {
+            soup_.add_face(list_);
+        } else {
+            add_strips(list_, soup_);
+        }
+    }
+
+    double value_of(Role role) const { return values_[static_cast<size_t>(role)]; }
+
+    void keep_vertex(const Columns& columns) {
+        soup_.positions.push_back({value_of(Role::kX), value_of(Role::kY), value_of(Role::kZ)});
+        if (columns.has_colors) {
+            soup_.vertex_colors.push_back({static_cast<float>(value_of(Role::kRed)),
+                                           static_cast<float>(value_of(Role::kGreen)),
+                                           static_cast<float>(value_of(Role::kBlue))});
+        }
+        if (columns.has_texcoords) {
+            vertex_texcoords_.push_back(
+                {static_cast<float>(value_of(Role::kU)), static_cast<float>(1 - value_of(Role::kV))});
+        }
+    }
+
+    void keep_face_texture() {
+        if (vertex_texcoords_.empty()) add_corner_texcoords(texcoords_, list_.size(), soup_);
+        const double number = value_of(Role::kTexture);
+        const bool known = number >= 0 && number < static_cast<double>(header_.textures.size());
+        face_texture_.push_back(known ? static_cast<uint32_t>(number) : Textures::kNoTexture);
+    }
+
+    const Header& header_;
+    Body body_;
+    Textures* textures_;
+    PolygonSoup soup_;
+    std::vector<std::array<float, 2>> vertex_texcoords_;  // v downwards
+    std::vector<uint32_t> face_texture_;                  // index into Header::textures
+    bool has_coordinates_ = false;
+
+    // Of the record.
+    std::array<double, 10> values_ = {};  // by role
+    std::vector<int64_t> list_;           // corners of a face or strip
+    std::vector<float> texcoords_;        // of a face
+};
+
 }  // namespace
 
 Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
     const Result<Header> parsed = read_header(text);
     if (!parsed.ok()) return parsed.error();
     const Header& header = parsed.value();
-
-    const std::string_view rest = text.substr(header.size);
-    Body body(rest, header.encoding);
-    PolygonSoup soup;
-    std::vector<int64_t> list;
-    std::vector<float> texcoords;                        // of one face
-    std::vector<std::array<float, 2>> vertex_texcoords;  // v downwards
-    std::vector<uint32_t> face_texture;                  // index into header.textures
-    bool has_coordinates = false;
+    const std::string_view body = text.substr(header.size);
+    Reader reader(header, body, textures);
     for (const Element& element : header.elements) {
         const size_t least = least_size(element, header.encoding);
         if (least == 0) continue;
-        if (element.count > (rest.size() + 1) / least) {
+        if (element.count > (body.size() + 1) / least) {
             return Error{Stage::kInput, "its header claims " + std::to_string(element.count) + " of '" +
                                             std::string(element.name.substr(0, 40)) + "', but the file holds only " +
                                             std::to_string(text.size()) + " bytes (is it cut short?)"};
         }
-        const bool is_vertex = element.name == "vertex";
-        const bool is_face = element.name == "face";
-        const bool is_strip = element.name == "tristrips";
-        std::vector<Role> roles;
-        for (const Property& property : element.properties) {
-            const bool single = property.count_type == Scalar::kNone;
-            roles.push_back(single && (is_vertex || is_face) ? role_of(property.name, is_vertex, textures != nullptr)
-                                                             : Role::kNone);
-        }
-        const bool has_colors = is_vertex && has_roles(roles, {Role::kRed, Role::kGreen, Role::kBlue});
-        const bool has_texcoords = is_vertex && has_roles(roles, {Role::kU, Role::kV});
-        if (is_vertex) {
-            soup.positions.reserve(element.count);
-            has_coordinates = has_roles(roles, {Role::kX, Role::kY, Role::kZ});
-        }
-        std::array<double, 10> values = {};  // by role
-        for (uint64_t record = 0; record < element.count; ++record) {
-            values.fill(0);
-            list.clear();
-            texcoords.clear();
-            for (size_t p = 0; p < element.properties.size(); ++p) {
-                const Property& property = element.properties[p];
-                if (property.count_type == Scalar::kNone) {
-                    const double value = body.next(property.type);
-                    const bool is_color = roles[p] >= Role::kRed && roles[p] <= Role::kBlue;
-                    values[static_cast<size_t>(roles[p])] =
-                        is_color ? static_cast<double>(channel(value, property.type)) : value;
-                    continue;
-                }
-                const size_t length = body.next_length(property);
-                const bool wanted =
-                    (is_face || is_strip) && (property.name == "vertex_indices" || property.name == "vertex_index");
-                const bool is_texcoord = textures && is_face && property.name == "texcoord";
-                if (wanted) list.clear();
-                for (size_t i = 0; i < length; ++i) {
-                    const double value = body.next(property.type);
-                    if (wanted) list.push_back(as_index(value));
-                    if (is_texcoord) texcoords.push_back(static_cast<float>(value));
-                }
-                if (body.failed) break;
-                if (wanted && is_face) soup.add_face(list);
-                if (wanted && is_strip) add_strips(list, soup);
-            }
-            if (body.failed) {
-                return Error{Stage::kInput, "it ends, or has something that is no number, inside '" +
-                                                std::string(element.name.substr(0, 40)) + "' " +
-                                                std::to_string(record) + " of " + std::to_string(element.count) +
-                                                " (is the file cut short?)"};
-            }
-            const auto value_of = [&](Role role) { return values[static_cast<size_t>(role)]; };
-            if (is_vertex) {
-                soup.positions.push_back({value_of(Role::kX), value_of(Role::kY), value_of(Role::kZ)});
-                if (has_colors) {
-                    soup.vertex_colors.push_back({static_cast<float>(value_of(Role::kRed)),
-                                                  static_cast<float>(value_of(Role::kGreen)),
-                                                  static_cast<float>(value_of(Role::kBlue))});
-                }
-                if (has_texcoords) {
-                    vertex_texcoords.push_back(
-                        {static_cast<float>(value_of(Role::kU)), static_cast<float>(1 - value_of(Role::kV))});
-                }
-            }
-            if (is_face && !header.textures.empty() && textures) {
-                if (vertex_texcoords.empty()) add_corner_texcoords(texcoords, list.size(), soup);
-                const double number = value_of(Role::kTexture);
-                const bool known = number >= 0 && number < static_cast<double>(header.textures.size());
-                face_texture.push_back(known ? static_cast<uint32_t>(number) : Textures::kNoTexture);
-            }
-        }
+        if (auto error = reader.read_element(element)) return *error;
     }
-    if (!has_coordinates) return Error{Stage::kInput, "its header names no vertices with x, y and z"};
-    if (!textures) return triangulate(std::move(soup));
-    if (soup.sizes.size() == face_texture.size()) add_textures(header, vertex_texcoords, face_texture, *textures, soup);
-    if (soup.vertex_colors.size() != soup.positions.size()) soup.vertex_colors.clear();
-    return triangulate(std::move(soup), std::move(textures->images));
+    return std::move(reader).mesh();
 }
 
 }  // namespace gim

@@ -22,10 +22,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
+#include "encoder/charts/border_barrier.h"
 #include "encoder/charts/chart_set.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
@@ -60,17 +60,6 @@ struct ChartMap {
 Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>& importance,
                                    const ChartParametrizeOptions& options);
 
-// A force on the border of a chart beside the map's own energy.
-class BorderForce {
-  public:
-    virtual ~BorderForce() = default;
-    // Infinite where the map is not allowed.
-    virtual double energy(const std::vector<Vec2>& uv) const = 0;
-    // add(vertex, gradient, a bound from above on the vertex's block of the Hessian)
-    using Add = std::function<void(uint32_t, const Vec2&, const Eigen::Matrix2d&)>;
-    virtual void derivatives(const std::vector<Vec2>& uv, const Add& add) const = 0;
-};
-
 // Takes the map's energy and area anew.
 void measure_map(const Chart& chart, const std::vector<double>& importance, ChartMap& map);
 
@@ -91,9 +80,5 @@ double stretch_efficiency(const std::vector<Chart>& charts, const std::vector<Ch
 
 // A chart's border in its map, from its first cut-node on.
 std::vector<Vec2> border_of(const Chart& chart, const std::vector<Vec2>& uv);
-
-// Two edges (numbers of their first corners) in which a closed polygon touches or crosses itself, if it does. O(n) for
-// polygons with edges of similar length.
-std::optional<std::array<uint32_t, 2>> find_crossing(const std::vector<Vec2>& polygon);
 
 }  // namespace gim

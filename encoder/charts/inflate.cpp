@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
+#include "encoder/charts/border_barrier.h"
 #include "encoder/surface/stretch.h"
 
 namespace gim {

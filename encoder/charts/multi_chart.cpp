@@ -27,6 +27,7 @@ constexpr double kUsualPacking = 0.8;
 
 constexpr int kMostSlitRounds = 4;
 constexpr uint32_t kMostBridgeRounds = 2;  // each packs again
+constexpr uint32_t kMostPackings = 10;
 
 std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
@@ -47,6 +48,136 @@ double total_cost(const std::vector<ChartMap>& maps) {
     return energy * area;
 }
 
+// The mesh as charts, and what it takes to split them.
+struct ChartedMesh {
+    Mesh mesh;  // of short edges
+    Topology topology;
+    AtlasOptions options;
+    std::vector<double> importance;  // per face; empty: 1
+    Atlas atlas;
+    TopologySummary summary;     // of the mesh
+    double even_efficiency = 0;  // of the first maps, whose samples are even
+
+    Result<void> split(const std::vector<uint32_t>& charts, const Progress& progress) {
+        auto split = split_charts(mesh, topology, importance, options, charts, std::move(atlas), progress);
+        if (!split.ok()) return split.error();
+        atlas = std::move(split.value());
+        return {};
+    }
+};
+
+Result<ChartedMesh> cut_into_charts(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
+    clock.begin(Stage::kCut);
+    ChartedMesh charted;
+    charted.mesh = refine_long_edges(mesh, kLongestEdge * std::sqrt(surface_area(mesh)));
+    charted.topology = build_topology(charted.mesh);
+    charted.options.chartify.charts = options.charts > 0 ? options.charts : automatic_charts(mesh, options.samples);
+    charted.options.chartify.seed = options.seed;
+    charted.options.parametrize.threads = options.threads;
+    GIM_TRY(atlas, build_atlas(charted.mesh, charted.topology, {}, charted.options, clock.progress()));
+    charted.atlas = std::move(atlas);
+    charted.summary = analyse_topology(charted.mesh.triangles, charted.mesh.positions.size()).summary;
+    charted.even_efficiency = stretch_efficiency(charted.atlas.charts, charted.atlas.maps);
+    return charted;
+}
+
+// Maps the charts again, denser where the surface needs it.
+Result<void> adapt_density(uint32_t most_samples, ChartedMesh& charted, StageClock& clock) {
+    clock.begin(Stage::kParametrize);
+    const auto samples = static_cast<uint32_t>(kUsualPacking * most_samples);
+    auto used = adapt_charts(charted.mesh, samples, kChartDensity, charted.options.parametrize, charted.atlas,
+                             clock.progress());
+    if (!used.ok()) return used.error();
+    charted.importance = std::move(used.value());
+    return {};
+}
+
+Result<void> split_at_slits(uint32_t most_samples, ChartedMesh& charted, const StageClock& clock) {
+    for (int round = 0; round < kMostSlitRounds; ++round) {
+        double area = 0;
+        for (const ChartMap& map : charted.atlas.maps) area += map.area;
+        const std::vector<uint32_t> slit = find_slits(std::sqrt(area / (kUsualPacking * most_samples)), charted.atlas);
+        if (slit.empty()) break;
+        if (auto error = charted.split(slit, clock.progress())) return error;
+    }
+    return {};
+}
+
+// One attempt to make an image of packed charts. Inflates packing and maps.
+Result<MultiChartImage> sample_and_zip(const ChartedMesh& charted, uint32_t threads, std::vector<ChartMap>& maps,
+                                       Packing& packing) {
+    InflateOptions options;
+    options.threads = threads;
+    const std::vector<Chart>& charts = charted.atlas.charts;
+    inflate(charts, charted.importance, options, maps, packing);
+    return zip(sample_charts(charts, maps, packing, threads), charts, maps, packing);
+}
+
+// Packs until the charts have no inlets and the seams close without bridges. Charts that do not fit are split before the
+// next attempt. If seams do not close, samples fall elsewhere in the next packing.
+Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh charted, StageClock& clock) {
+    PackOptions pack_options;
+    pack_options.most_samples = options.samples;
+    pack_options.effort = options.pack_effort;
+    pack_options.seed = options.seed;
+    pack_options.threads = options.threads;
+    MultiChart result;
+    for (;; ++result.packings) {
+        clock.begin(Stage::kSample);
+        GIM_TRY(packing, pack(shapes_of(charted.atlas), pack_options, clock.progress()));
+        if (!packing.broken.empty()) {
+            if (result.packings == kMostPackings)
+                return Error{Stage::kSample, "charts have inlets narrower than a sample; ask for more samples"};
+            clock.begin(Stage::kParametrize);
+            GIM_CHECK(charted.split(packing.broken, clock.progress()));
+            continue;
+        }
+        std::vector<ChartMap> maps = charted.atlas.maps;  // the next attempt begins with the maps as they are now
+        auto image = sample_and_zip(charted, options.threads, maps, packing);
+        if (!image.ok()) {
+            if (result.packings == kMostPackings) return image.error();
+            ++pack_options.seed;
+            continue;
+        }
+        if (result.packings <= kMostBridgeRounds) {
+            const auto bridged = find_bridges(image.value(), packing, charted.mesh, charted.atlas);
+            if (!bridged.empty()) {
+                GIM_CHECK(charted.split(bridged, clock.progress()));
+                continue;
+            }
+        }
+        result.image = std::move(image.value());
+        result.topology = charted.summary;
+        result.stretch_efficiency = charted.even_efficiency * total_cost(charted.atlas.maps) / total_cost(maps);
+        result.packing_efficiency =
+            static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
+        charted.atlas.maps = std::move(maps);
+        result.atlas = std::move(charted.atlas);
+        result.packing = std::move(packing);
+        return result;
+    }
+}
+
+Result<void> fit_samples(const Mesh& mesh, const MultiChartOptions& options, MultiChart& result, StageClock& clock) {
+    clock.begin(Stage::kFit);
+    FitOptions fit_options;
+    fit_options.strength = *options.fit;
+    fit_options.thorough = true;
+    fit_options.seed = options.seed;
+    fit_options.threads = options.threads;
+    GIM_TRY(fitted, fit(result.image, mesh, fit_options, clock.progress()));
+    result.sampled = std::exchange(result.image.positions, std::move(fitted.positions));
+    result.before_fit = fitted.before;
+    result.after_fit = fitted.after;
+    return {};
+}
+
+Result<void> check_topology(const MultiChart& result) {
+    const Mesh mesh = surface_of(result.image).mesh;
+    if (same_topology(result.topology, analyse_topology(mesh.triangles, mesh.positions.size()).summary)) return {};
+    return Error{Stage::kSample, "the image's surface has another topology than the mesh; ask for more samples"};
+}
+
 }  // namespace
 
 uint32_t automatic_charts(const Mesh& mesh, uint32_t samples) {
@@ -56,102 +187,17 @@ uint32_t automatic_charts(const Mesh& mesh, uint32_t samples) {
 }
 
 Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
-    clock.begin(Stage::kCut);
-    const Mesh fine = refine_long_edges(mesh, kLongestEdge * std::sqrt(surface_area(mesh)));
-    const Topology topology = build_topology(fine);
-    const TopologySummary wanted = analyse_topology(fine.triangles, fine.positions.size()).summary;
-    AtlasOptions atlas_options;
-    atlas_options.chartify.charts = options.charts > 0 ? options.charts : automatic_charts(mesh, options.samples);
-    atlas_options.chartify.seed = options.seed;
-    atlas_options.parametrize.threads = options.threads;
-    GIM_TRY(atlas, build_atlas(fine, topology, {}, atlas_options, clock.progress()));
-
-    const double even_efficiency = stretch_efficiency(atlas.charts, atlas.maps);
-    std::vector<double> importance;
+    GIM_TRY(charted, cut_into_charts(mesh, options, clock));
     if (options.density) {
-        clock.begin(Stage::kParametrize);
-        const auto samples = static_cast<uint32_t>(kUsualPacking * options.samples);
-        GIM_TRY(used, adapt_charts(fine, samples, kChartDensity, atlas_options.parametrize, atlas, clock.progress()));
-        importance = std::move(used);
+        GIM_CHECK(adapt_density(options.samples, charted, clock));
     }
-
-    for (int round = 0; round < kMostSlitRounds; ++round) {
-        double area = 0;
-        for (const ChartMap& map : atlas.maps) area += map.area;
-        const std::vector<uint32_t> slit = find_slits(std::sqrt(area / (kUsualPacking * options.samples)), atlas);
-        if (slit.empty()) break;
-        GIM_TRY(split,
-                split_charts(fine, topology, importance, atlas_options, slit, std::move(atlas), clock.progress()));
-        atlas = std::move(split);
-    }
-
-    PackOptions pack_options;
-    pack_options.most_samples = options.samples;
-    pack_options.effort = options.pack_effort;
-    pack_options.seed = options.seed;
-    pack_options.threads = options.threads;
-    constexpr uint32_t kMostPackings = 10;
-    MultiChart result;
-    result.topology = wanted;
-    for (;; ++result.packings) {
-        clock.begin(Stage::kSample);
-        GIM_TRY(packing, pack(shapes_of(atlas), pack_options, clock.progress()));
-        if (!packing.broken.empty()) {
-            if (result.packings == kMostPackings)
-                return Error{Stage::kSample, "charts have inlets narrower than a sample; ask for more samples"};
-            clock.begin(Stage::kParametrize);
-            GIM_TRY(split, split_charts(fine, topology, importance, atlas_options, packing.broken, std::move(atlas),
-                                        clock.progress()));
-            atlas = std::move(split);
-            continue;
-        }
-        // Packed again, if it comes to that, they are as they were.
-        std::vector<ChartMap> maps = atlas.maps;
-        InflateOptions inflate_options;
-        inflate_options.threads = options.threads;
-        inflate(atlas.charts, importance, inflate_options, maps, packing);
-        auto zipped = zip(sample_charts(atlas.charts, maps, packing, options.threads), atlas.charts, maps, packing);
-        if (!zipped.ok()) {
-            // Samples fall elsewhere in another packing.
-            if (result.packings == kMostPackings) return zipped.error();
-            ++pack_options.seed;
-            continue;
-        }
-        if (result.packings <= kMostBridgeRounds) {
-            const std::vector<uint32_t> bridged = find_bridges(zipped.value(), packing, fine, atlas);
-            if (!bridged.empty()) {
-                GIM_TRY(split, split_charts(fine, topology, importance, atlas_options, bridged, std::move(atlas),
-                                            clock.progress()));
-                atlas = std::move(split);
-                continue;
-            }
-        }
-        result.image = std::move(zipped.value());
-        result.stretch_efficiency = even_efficiency * total_cost(atlas.maps) / total_cost(maps);
-        atlas.maps = std::move(maps);
-        result.packing_efficiency =
-            static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
-        result.atlas = std::move(atlas);
-        result.packing = std::move(packing);
-        break;
-    }
+    GIM_CHECK(split_at_slits(options.samples, charted, clock));
+    GIM_TRY(result, pack_and_zip(options, std::move(charted), clock));
     if (options.fit) {
-        clock.begin(Stage::kFit);
-        FitOptions fit_options;
-        fit_options.strength = *options.fit;
-        fit_options.thorough = true;
-        fit_options.seed = options.seed;
-        fit_options.threads = options.threads;
-        GIM_TRY(fitted, fit(result.image, mesh, fit_options, clock.progress()));
-        result.sampled = std::exchange(result.image.positions, std::move(fitted.positions));
-        result.before_fit = fitted.before;
-        result.after_fit = fitted.after;
+        GIM_CHECK(fit_samples(mesh, options, result, clock));
     }
-    const Mesh surface = surface_of(result.image).mesh;
-    const TopologySummary found = analyse_topology(surface.triangles, surface.positions.size()).summary;
-    if (!same_topology(wanted, found))
-        return Error{Stage::kSample, "the image's surface has another topology than the mesh; ask for more samples"};
-    return result;
+    GIM_CHECK(check_topology(result));
+    return std::move(result);
 }
 
 }  // namespace gim

@@ -54,8 +54,7 @@ void chain_base(Pyramid<int32_t>* pyramid) {
 }
 
 template <class Wavelet>
-Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_t c, const Units& units,
-                                                float finest) {
+Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_t c, const Units& units, float finest) {
     using Sample = typename Wavelet::Sample;
     const ChartBox& box = images.charts[c];
     std::vector<Sample> samples = to_units<Sample>(images.positions[c], units);

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "encoder/base/result.h"
-#include "encoder/charts/glue_charts.h"
-#include "encoder/surface/topology_summary.h"
+#include "encoder/charts/repair_zipper.h"
 
 namespace gim {
 
@@ -220,9 +218,9 @@ class Zipper {
             }
             number_paths();
             close_all();
-            GIM_TRY(spikes, repair());
+            GIM_TRY(spikes, repair_zippers(image_, [&] { close_all(); }));
             if (spikes.empty()) return std::move(image_);
-            if (round == kMostRounds) return give_up(spikes.size());
+            if (round == kMostRounds) return charts_too_small(spikes.size());
             for (const uint32_t i : spikes) {
                 image_.mask.defined[i] = 0;
                 image_.positions[i] = Vec3::Zero();
@@ -359,173 +357,6 @@ class Zipper {
         for (size_t k = 0; k < parts.size(); ++k) {
             const Vec3 point = point_at(curve, parts[k]);
             for (const uint32_t sample : members[k]) image_.positions[sample] = point;
-        }
-    }
-
-    // ---- repair: two triangles side by side in one chart may meet two others in its neighbour with the same three
-    // vertices. The vertex between the ends of the doubled edge is then merged with one of them, which flattens both.
-
-    // A step of kBoth, as seen by the border loop of a chart: the pair of points (before, after) it leads between.
-    struct Advance {
-        uint32_t before = 0, after = 0;     // representatives
-        uint32_t zipper = kNone, step = 0;  // kNone: on an input boundary
-    };
-
-    // Around chart c, one entry for each pair of consecutive different points.
-    std::vector<Advance> advances(uint32_t c, const std::vector<uint32_t>& point) const {
-        std::vector<Advance> result;
-        for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) {
-            const std::vector<uint32_t> own = samples_of(c, p);
-            const uint32_t number = first_path_[c] + p, mate = image_.seams.paths[number].mate;
-            if (mate == kNone) {
-                for (size_t i = 0; i + 1 < own.size(); ++i)
-                    result.push_back({point[own[i]], point[own[i + 1]], kNone, 0});
-                continue;
-            }
-            const bool forward = number < mate;
-            const uint32_t zipper = zipper_of_path_[forward ? number : mate];
-            const std::vector<ZipStep>& steps = image_.seams.zippers[zipper];
-            std::vector<Advance> here;
-            size_t at = forward ? 0 : own.size() - 1;  // index into own
-            for (uint32_t k = 0; k < steps.size(); ++k) {
-                const bool moves =
-                    steps[k] == ZipStep::kBoth || steps[k] == (forward ? ZipStep::kFirst : ZipStep::kSecond);
-                const size_t before = at;
-                if (moves) forward ? ++at : --at;
-                if (steps[k] != ZipStep::kBoth) continue;
-                here.push_back({point[own[forward ? before : at]], point[own[forward ? at : before]], zipper, k});
-            }
-            if (!forward) std::reverse(here.begin(), here.end());
-            result.insert(result.end(), here.begin(), here.end());
-        }
-        return result;
-    }
-
-    // Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. Marks
-    // the steps to drop; false when there is no such piece.
-    bool flatten(uint32_t a, uint32_t b, const std::vector<uint32_t>& point,
-                 std::vector<std::vector<uint8_t>>& drop) const {
-        constexpr size_t kLongestPiece = 6;
-        for (uint32_t c = 0; c < charts_.size(); ++c) {
-            const std::vector<Advance> around = advances(c, point);
-            const size_t count = around.size();
-            for (size_t i = 0; i < count; ++i) {
-                if (around[i].before != a && around[i].before != b) continue;
-                const uint32_t end = around[i].before == a ? b : a;
-                for (size_t length = 2; length <= std::min(kLongestPiece, count - 2); ++length) {
-                    if (around[(i + length - 1) % count].after != end) continue;
-                    // One of the piece's steps stays, on the seam with the fewest.
-                    size_t keep = 0;
-                    const auto room = [&](size_t k) {
-                        const uint32_t zipper = around[(i + k) % count].zipper;
-                        if (zipper == kNone) return size_t{0};
-                        const std::vector<ZipStep>& steps = image_.seams.zippers[zipper];
-                        return static_cast<size_t>(std::count(steps.begin(), steps.end(), ZipStep::kBoth));
-                    };
-                    bool possible = true;
-                    for (size_t k = 0; k < length; ++k) {
-                        if (room(k) < room(keep)) keep = k;
-                    }
-                    for (size_t k = 0; k < length; ++k) {
-                        size_t dropped = 0;  // on the same seam; one step at least has to stay there
-                        for (size_t l = 0; l < length; ++l)
-                            dropped += l != keep && around[(i + l) % count].zipper == around[(i + k) % count].zipper;
-                        possible &= k == keep || room(k) > dropped;
-                    }
-                    if (!possible) continue;
-                    for (size_t k = 0; k < length; ++k) {
-                        const Advance& advance = around[(i + k) % count];
-                        if (k != keep) drop[advance.zipper][advance.step] = 1;
-                    }
-                    return true;
-                }
-            }
-        }
-        return false;
-    }
-
-    // Samples that are the tips of single triangles over a doubled edge: without them it is a border edge on that side.
-    std::vector<uint32_t> spikes_at(const TopologyAnalysis& analysis, const Surface& surface,
-                                    const std::vector<uint32_t>& point) const {
-        std::set<std::pair<uint32_t, uint32_t>> doubled;
-        for (const uint32_t e : analysis.nonmanifold_edges) {
-            const uint32_t h = analysis.edges.around(e)[0];
-            doubled.insert(std::minmax(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)]));
-        }
-        std::vector<uint32_t> spikes;
-        std::vector<uint8_t> cut(charts_.size(), 0);
-        for (const std::vector<uint32_t>& loop : loops_) {
-            for (size_t k = 0; k < loop.size(); ++k) {
-                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
-                if (!is_spike(image_.mask, loop[k]) || cut[owner_[loop[k]]]) continue;
-                if (doubled.count(std::minmax(point[before], point[after])) == 0) continue;
-                spikes.push_back(loop[k]);
-                cut[owner_[loop[k]]] = 1;  // one at a time: two that touch must not both go
-            }
-        }
-        if (!spikes.empty()) return spikes;
-        // Otherwise an end of the edge, where it runs across a chart.
-        for (const std::vector<uint32_t>& loop : loops_) {
-            for (size_t k = 0; k < loop.size(); ++k) {
-                const uint32_t before = loop[(k + loop.size() - 1) % loop.size()], after = loop[(k + 1) % loop.size()];
-                if (cut[owner_[loop[k]]] || !can_remove(image_.mask, loop[k])) continue;
-                for (const uint32_t other : loop) {
-                    const auto apart = [&](uint32_t x, uint32_t y) { return std::max(x, y) - std::min(x, y); };
-                    if (other == before || other == after || other == loop[k]) continue;
-                    if (apart(other % image_.width(), loop[k] % image_.width()) > 1) continue;
-                    if (apart(other / image_.width(), loop[k] / image_.width()) > 1) continue;
-                    if (doubled.count(std::minmax(point[other], point[loop[k]])) == 0) continue;
-                    spikes.push_back(loop[k]);
-                    cut[owner_[loop[k]]] = 1;
-                    break;
-                }
-            }
-        }
-        return spikes;
-    }
-
-    static Error give_up(size_t edges) {
-        return {Stage::kSample, "the surface comes together at " + std::to_string(edges) +
-                                    " edges along the seams; the charts are too small for this resolution: ask for "
-                                    "more samples or fewer charts"};
-    }
-
-    // Makes the glued surface a manifold by merging points along the seams. Where that does not do: the samples without
-    // which it should.
-    Result<std::vector<uint32_t>> repair() {
-        constexpr int kMostRounds = 12;
-        for (int round = 0;; ++round) {
-            GIM_TRY(gluing, glue_charts(image_.mask, image_.seams));
-            image_.gluing = std::move(gluing);
-            const std::vector<uint32_t>& point = image_.gluing.representative;
-            const Surface surface = surface_of(image_);
-            const TopologyAnalysis analysis = analyse_topology(surface.mesh.triangles, surface.mesh.positions.size());
-            if (analysis.summary.manifold) return std::vector<uint32_t>{};
-            std::vector<std::vector<uint8_t>> drop;
-            for (const auto& steps : image_.seams.zippers) drop.emplace_back(steps.size(), uint8_t{0});
-            bool any = false;
-            for (const uint32_t e : analysis.nonmanifold_edges) {
-                const uint32_t h = analysis.edges.around(e)[0];
-                any |= flatten(surface.sample[from(surface.mesh, h)], surface.sample[to(surface.mesh, h)], point, drop);
-            }
-            if (!any || round == kMostRounds) {
-                std::vector<uint32_t> spikes = spikes_at(analysis, surface, point);
-                if (spikes.empty())
-                    return give_up(analysis.nonmanifold_edges.size() + analysis.nonmanifold_vertices.size());
-                return spikes;
-            }
-            for (size_t z = 0; z < drop.size(); ++z) {
-                std::vector<ZipStep> steps;
-                for (size_t k = 0; k < drop[z].size(); ++k) {
-                    if (drop[z][k]) {
-                        steps.insert(steps.end(), {ZipStep::kFirst, ZipStep::kSecond});
-                    } else {
-                        steps.push_back(image_.seams.zippers[z][k]);
-                    }
-                }
-                image_.seams.zippers[z] = std::move(steps);
-            }
-            close_all();
         }
     }
 

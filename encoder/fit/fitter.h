@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "encoder/fit/fit.h"
-#include "encoder/fit/stencil_solver.h"
+#include "encoder/fit/fit_system.h"
 #include "encoder/image/gluing.h"
 #include "encoder/surface/closest_point.h"
 #include "encoder/surface/mesh.h"
@@ -45,19 +45,6 @@ struct FitReference {
 };
 
 struct ImageSurface;
-struct Pull;
-
-// Normal equations for the displacements of the samples.
-struct FitSystem {
-    StencilMatrix matrix;
-    std::vector<Vec3> right;  // per sample; of a glued one, its part of the sum
-
-    FitSystem(uint32_t width, uint32_t height);
-    void add(const Triangle& corners, const Pull& pull);
-    // (dx_i - dx_j) should make up for `difference` = x_i - x_j.
-    void add_spring(uint32_t i, uint32_t j, const Eigen::Matrix3d& weight, const Vec3& difference);
-    void add_anchor(uint32_t i, const Eigen::Matrix3d& weight, const Vec3& residual);
-};
 
 class Fitter {
   public:
@@ -124,6 +111,9 @@ class Fitter {
     // The smaller cosine between the faces of a cell and the reference at their centres. The reference's face that was
     // near the cell at the beginning of the round tells when there is no need to look.
     double facing(const std::vector<Vec3>& positions, const std::array<Triangle, 2>& faces, uint32_t cell) const;
+
+    // Cosine above which a face is believed without looking twice.
+    static constexpr double kUnsuspicious = 0.7;
 
     const GridGluing& gluing_;
     const FitReference& reference_;

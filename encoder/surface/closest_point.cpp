@@ -3,8 +3,6 @@
 // surface.
 #include "encoder/surface/closest_point.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,18 +10,15 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
+#include "encoder/surface/box_splits.h"
 
 namespace gim {
 
 namespace {
 
 constexpr uint32_t kWidth = 4;  // children of a node
-constexpr uint32_t kLeafTriangles = 4;
-constexpr uint32_t kBins = 16;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// ---- one triangle
-// ----------------------------------------------------------------------------------------------------
+// ---- one triangle ----------------------------------------------------------------------------------------------------
 
 struct Candidate {
     double squared = std::numeric_limits<double>::infinity();
@@ -113,24 +108,7 @@ ClosestPoint expand(const Candidate& found, const Vec3& a, const Vec3& b, const 
     return result;
 }
 
-// ---- boxes and nodes
-// -------------------------------------------------------------------------------------------------
-
-struct Box {
-    std::array<float, 3> low = {kInfinity, kInfinity, kInfinity};
-    std::array<float, 3> high = {-kInfinity, -kInfinity, -kInfinity};
-
-    void add(const Box& other) {
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], other.low[k]);
-            high[k] = std::max(high[k], other.high[k]);
-        }
-    }
-    float half_area() const {
-        const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-        return x < 0 ? 0.0f : x * y + y * z + z * x;
-    }
-};
+// ---- nodes -----------------------------------------------------------------------------------------------------------
 
 struct Corners {
     Vec3 a, b, c;
@@ -181,104 +159,6 @@ struct alignas(64) Node {
     uint8_t used;
 };
 
-// A binary split of a range of the leaf order, named by the position where it splits, which no other split has.
-struct Split {
-    Box left, right;
-    uint32_t left_split, right_split;  // the splits of the two halves, or kNone where they are leaves
-};
-
-struct BuildItem {
-    Box box;
-    std::array<float, 3> centre;
-    uint32_t triangle;
-};
-
-struct Bin {
-    Box box;
-    uint32_t count = 0;
-};
-
-// Chooses the plane of least expected cost among kBins per axis; returns the position of the first item right of it.
-uint32_t partition(std::vector<BuildItem>& items, uint32_t begin, uint32_t end) {
-    std::array<float, 3> low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
-    for (uint32_t i = begin; i < end; ++i) {
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], items[i].centre[k]);
-            high[k] = std::max(high[k], items[i].centre[k]);
-        }
-    }
-    const auto bin_of = [&](const BuildItem& item, int axis) {
-        const float where = (item.centre[axis] - low[axis]) / (high[axis] - low[axis]) * float(kBins);
-        return std::min(static_cast<uint32_t>(where), kBins - 1);
-    };
-    std::array<std::array<Bin, kBins>, 3> bins{};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(high[axis] > low[axis])) continue;
-        for (uint32_t i = begin; i < end; ++i) {
-            Bin& bin = bins[axis][bin_of(items[i], axis)];
-            bin.box.add(items[i].box);
-            ++bin.count;
-        }
-    }
-    float best_cost = kInfinity;
-    int best_axis = -1;
-    uint32_t best_bin = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(high[axis] > low[axis])) continue;
-        std::array<float, kBins> right_cost{};
-        Box right;
-        uint32_t right_count = 0;
-        for (uint32_t b = kBins - 1; b > 0; --b) {
-            right.add(bins[axis][b].box);
-            right_count += bins[axis][b].count;
-            right_cost[b] = right.half_area() * float(right_count);
-        }
-        Box left;
-        uint32_t left_count = 0;
-        for (uint32_t b = 1; b < kBins; ++b) {
-            left.add(bins[axis][b - 1].box);
-            left_count += bins[axis][b - 1].count;
-            const float cost = left.half_area() * float(left_count) + right_cost[b];
-            if (left_count > 0 && left_count < end - begin && cost < best_cost) {
-                best_cost = cost;
-                best_axis = axis;
-                best_bin = b;
-            }
-        }
-    }
-    // All centres in one place (or costs that are not numbers): any halving will do.
-    if (best_axis < 0) return begin + (end - begin) / 2;
-    const auto middle = std::partition(items.begin() + begin, items.begin() + end,
-                                       [&](const BuildItem& item) { return bin_of(item, best_axis) < best_bin; });
-    return static_cast<uint32_t>(middle - items.begin());
-}
-
-Box bounds(const std::vector<BuildItem>& items, uint32_t begin, uint32_t end) {
-    Box box;
-    for (uint32_t i = begin; i < end; ++i) box.add(items[i].box);
-    return box;
-}
-
-// Splits a range down to leaves; returns its top split, or kNone if it is a leaf. Lopsided splits are cut short by
-// halving, which bounds the depth.
-uint32_t build_range(std::vector<BuildItem>& items, std::vector<Split>& splits, uint32_t begin, uint32_t end,
-                     int depth) {
-    if (end - begin <= kLeafTriangles) return kNone;
-    const uint32_t middle = depth > 48 ? begin + (end - begin) / 2 : partition(items, begin, end);
-    Split& split = splits[middle];
-    split.left = bounds(items, begin, middle);
-    split.right = bounds(items, middle, end);
-    const auto left = [&] { split.left_split = build_range(items, splits, begin, middle, depth + 1); };
-    const auto right = [&] { split.right_split = build_range(items, splits, middle, end, depth + 1); };
-    if (end - begin > 8192) {
-        tbb::parallel_invoke(left, right);
-    } else {
-        left();
-        right();
-    }
-    return middle;
-}
-
 struct Range {
     Box box;
     uint32_t begin, end, split;
@@ -286,18 +166,17 @@ struct Range {
 
 float round_down(double x) {
     const auto f = static_cast<float>(x);
-    return double{f} > x ? std::nextafter(f, -kInfinity) : f;
+    return double{f} > x ? std::nextafter(f, -Box::kInfinity) : f;
 }
 
 float round_up(double x) {
     const auto f = static_cast<float>(x);
-    return double{f} < x ? std::nextafter(f, kInfinity) : f;
+    return double{f} < x ? std::nextafter(f, Box::kInfinity) : f;
 }
 
 }  // namespace
 
-// ---- the tree
-// --------------------------------------------------------------------------------------------------------
+// ---- the tree --------------------------------------------------------------------------------------------------------
 
 struct ClosestPointTree::Impl {
     // Floats are in a frame around the middle of the mesh, scaled to about unit size.
@@ -321,7 +200,7 @@ struct ClosestPointTree::Impl {
 
     // Opens the largest of up to four ranges until the node is full, then does the same below. Returns the node's
     // index.
-    uint32_t collapse(const std::vector<Split>& splits, const Range& whole) {
+    uint32_t collapse(const std::vector<BoxSplit>& splits, const Range& whole) {
         std::array<Range, kWidth> children{whole};
         uint32_t used = 1;
         while (used < kWidth) {
@@ -333,7 +212,7 @@ struct ClosestPointTree::Impl {
             }
             if (open < 0) break;
             const Range range = children[open];
-            const Split& split = splits[range.split];
+            const BoxSplit& split = splits[range.split];
             children[open] = {split.left, range.begin, range.split, split.left_split};
             children[used++] = {split.right, range.split, range.end, split.right_split};
         }
@@ -374,19 +253,18 @@ ClosestPointTree::ClosestPointTree(const Mesh& mesh, uint32_t threads) : impl_(s
     // A power of two, so that scaling rounds nothing.
     if (extent > 0 && std::isfinite(extent)) tree.scale = std::ldexp(1.0, -std::clamp(std::ilogb(extent), -1000, 1000));
 
-    std::vector<BuildItem> items(count);
+    std::vector<BoxItem> items(count);
     parallel_blocks(count, 16384, threads, [&](size_t, size_t begin, size_t end) {
         for (size_t f = begin; f < end; ++f) {
             const Triangle& t = mesh.triangles[f];
-            BuildItem& item = items[f];
+            BoxItem& item = items[f];
             item.box = tree.box_of({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
             for (int k = 0; k < 3; ++k) item.centre[k] = 0.5f * (item.box.low[k] + item.box.high[k]);
             item.triangle = static_cast<uint32_t>(f);
         }
     });
-    std::vector<Split> splits(count);
-    uint32_t top = kNone;
-    with_threads(threads, [&] { top = build_range(items, splits, 0, count, 0); });
+    std::vector<BoxSplit> splits;
+    const uint32_t top = split_boxes(items, splits, threads);
 
     tree.corners.resize(count);
     tree.triangle.resize(count);
@@ -443,7 +321,7 @@ ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
         uint32_t first;
         uint32_t count;
     };
-    std::array<Entry, 256> stack;  // at most 3 waiting entries a level; build_range bounds the depth by about 48 + 32
+    std::array<Entry, 256> stack;  // at most 3 waiting entries a level; box_splits.h bounds the depth by about 48 + 32
     uint32_t size = 0;
     Entry entry{0, 0, 0};
     for (;;) {

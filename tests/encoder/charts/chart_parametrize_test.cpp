@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "encoder/charts/atlas.h"
+#include "encoder/charts/border_barrier.h"
 #include "encoder/squares/parametrize.h"
 #include "tests/encoder/stage_meshes.h"
 

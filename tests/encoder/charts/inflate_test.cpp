@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "corpus/generators.h"
+#include "encoder/charts/border_barrier.h"
 #include "encoder/surface/clean.h"
 #include "encoder/surface/stretch.h"
 #include "tests/encoder/charts/packed_charts.h"
