@@ -54,13 +54,4 @@ inline void to_object(const Header& header, const float* units, float* __restric
         for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
 }
 
-// The first chunk of a type; false where there is none.
-bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset);
-
-// The payload of the SEAM chunk.
-Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload);
-
-// The chunk that holds a level of all images.
-Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
-
 }  // namespace gim
