@@ -1,9 +1,8 @@
 #include "decoder/charts/chart_decoder.h"
 
 #include <algorithm>
+#include <array>
 #include <new>
-
-#include "decoder/squares/square_decoder.h"
 
 namespace gim {
 namespace {

@@ -1,6 +1,7 @@
 #include "decoder/squares/square_decoder.h"
 
-#include <algorithm>
+#include <array>
+#include <new>
 
 #include "format/sideband_code.h"
 
