@@ -1,4 +1,5 @@
-// What the decoder asks of a layout: a table of functions for each. Adding a layout adds a folder and a row of the table.
+// What the decoder asks of a layout: a table of functions for each. Adding a layout adds a folder and a row of the
+// table.
 #pragma once
 
 #include <array>

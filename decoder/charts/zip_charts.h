@@ -6,8 +6,9 @@
 
 namespace gim {
 
-// Reads the borders and zippers of stream_level. Where that is the level that is asked for, also fills ws.depth and makes ws.point
-// a forest over flat samples in which parents come before their children. False: no encoder writes such borders.
+// Reads the borders and zippers of stream_level. Where that is the level that is asked for, also fills ws.depth and
+// makes ws.point a forest over flat samples in which parents come before their children. False: no encoder writes such
+// borders.
 bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, RangeDecoder& decoder);
 
 // Turns the forest into vertex numbers, by first appearance. Returns how many there are.
