@@ -9,7 +9,7 @@
 #include "encoder/code/rate_control.h"
 #include "encoder/surface/compare_meshes.h"
 #include "format/chart_table.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 
 namespace gim {
 
@@ -149,10 +149,10 @@ class RateSearch {
 };
 
 uint64_t sideband_size(std::span<const uint8_t> bytes) {
-    gim_info info;
-    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return 0;
+    Decoder decoder;
+    if (decoder.open(bytes) != GIM_OK) return 0;
     gim_chunk chunk;
-    for (uint32_t i = 0; gim_read_chunk(&info, bytes.data(), bytes.size(), i, &chunk) == GIM_OK; ++i) {
+    for (uint32_t i = 0; decoder.read_chunk(i, &chunk) == GIM_OK; ++i) {
         if (std::string_view(chunk.name) == "SEAM") return chunk.size;
     }
     return 0;
