@@ -1,30 +1,12 @@
-// The C interface of gim/decoder.h over the parts in this folder.
+// The C interface of gim/decoder.h: checks arguments and calls the functions of the layout (level_reader.h).
 #include <algorithm>
 #include <cstring>
 
-#include "decoder/charts/read_charts.h"
+#include "decoder/level_reader.h"
 #include "decoder/reopen.h"
-#include "decoder/squares/square_decoder.h"
-#include "decoder/squares/triangulate.h"
 #include "gim/decoder.h"
 
 namespace gim {
-
-ContainerLimits limits_of(const gim_limits* limits) {
-    ContainerLimits l;
-    if (limits) l = {limits->max_samples, limits->max_images, limits->max_side};
-    return l;
-}
-
-Status reopen(const gim_info* info, const void* bytes, size_t size, Header* header) {
-    if (!info || (!bytes && size > 0)) return Status::kBadArgument;
-    if (Status s = parse_header({static_cast<const uint8_t*>(bytes), size}, limits_of(&info->limits), header);
-        s != Status::kOk)
-        return s;
-    const bool same_file = header->index_size == info->index_size && header->file_size == info->file_size &&
-                           header->image_count() == info->image_count && header->level_count == info->level_count;
-    return same_file ? Status::kOk : Status::kBadArgument;
-}
 
 namespace {
 
@@ -32,59 +14,16 @@ gim_status code(Status status) { return static_cast<gim_status>(status); }
 
 std::span<const uint8_t> span_of(const void* bytes, size_t size) { return {static_cast<const uint8_t*>(bytes), size}; }
 
-// One level of one image, ready to be decoded.
-struct Level {
-    Header header;
-    SeamTable seams;
-    uint32_t side = 0, coarsest = 0, class_count = 0;
-    float* samples = nullptr;  // in units, after decode()
-    ImageWorkspace ws;
-};
-
-// The header, for calls on one image.
-Status open_image(const gim_info* info, const void* bytes, size_t size, uint32_t image, Header* header) {
-    if (Status s = reopen(info, bytes, size, header); s != Status::kOk) return s;
-    return image < header->image_count() ? Status::kOk : Status::kBadArgument;
-}
-
-// `out->header` is of a file of squares. out->coarsest is only sought up to `most`, at least `level`.
-Status open_level(std::span<const uint8_t> file, uint32_t image, uint32_t level, uint32_t most, Level* out) {
-    if (Status s = read_seams(out->header, file, image, &out->seams); s != Status::kOk) return s;
-    const uint32_t steps = out->header.side(image) - 1;
-    out->coarsest = 0;
-    while (out->coarsest < most && out->coarsest + 1 < out->header.level_count_of(image) &&
-           level_is_closed(out->seams, (steps >> (out->coarsest + 1)) + 1))
-        ++out->coarsest;
-    if (level > out->coarsest) return Status::kNoSuchLevel;
-    out->side = (steps >> level) + 1;
-    out->class_count = ring_class_count(out->seams, out->side);
-    return Status::kOk;
-}
-
-uint64_t scratch_size(uint32_t side) {
-    Arena arena(nullptr);
-    (void)lay_out(side, &arena);
-    return arena.used();
-}
-
-Status decode(std::span<const uint8_t> file, uint32_t image, uint32_t level, const Memory& scratch, Level* out) {
-    if (Status s = open_level(file, image, level, level, out); s != Status::kOk) return s;
-    if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
-    if (scratch.size < scratch_size(out->side)) return Status::kScratchTooSmall;
-    Arena arena(scratch.bytes);
-    out->ws = lay_out(out->side, &arena);
-    return decode_level(out->header, file, image, level, out->seams, out->ws, &out->samples);
-}
-
-// The vertices of the closed mesh with their first samples, in runs along a row: f(vertex, sample, count).
+// Calls f(reader, request) for an image of a file, with the functions of the file's layout.
 template <class F>
-void for_each_run(const Level& level, const F& f) {
-    const uint32_t side = level.side;
-    uint32_t next = 0;
-    for (uint32_t k = 0; k < ring_length(side); ++k) {
-        if (level.ws.class_of[k] == next) f(next++, ring_point(side, k), 1);
-    }
-    for (uint32_t r = 1; r + 1 < side; ++r, next += side - 2) f(next, GridPoint{r, 1}, side - 2);
+gim_status with_image(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                      const F& f) {
+    Header header;
+    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return code(s);
+    if (image >= header.image_count()) return code(Status::kBadArgument);
+    const ContainerLimits limits = limits_of(&info->limits);
+    const LevelRequest request = {header, span_of(bytes, size), limits, image, level};
+    return code(f(reader_of(header.layout), request));
 }
 
 }  // namespace
@@ -148,22 +87,9 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
 gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                gim_level_info* level_info) {
     if (!level_info) return code(Status::kBadArgument);
-    Level l;
-    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
-    if (l.header.layout == FileLayout::kCharts)
-        return code(chart_level_info(l.header, span_of(bytes, size), limits_of(&info->limits), level, level_info));
-    if (Status s = open_level(span_of(bytes, size), image, level, UINT32_MAX, &l); s != Status::kOk) return code(s);
-    Chunk chunk;
-    uint64_t offset = 0;
-    if (Status s = find_level_chunk(l.header, level, &chunk, &offset); s != Status::kOk) return code(s);
-    *level_info = {};
-    level_info->side = level_info->width = level_info->height = l.side;
-    level_info->coarsest_level = l.coarsest;
-    level_info->vertex_count = l.class_count + (l.side - 2) * (l.side - 2);
-    level_info->triangle_count = 2 * (l.side - 1) * (l.side - 1);
-    level_info->prefix_size = offset + chunk.size;
-    level_info->scratch_size = scratch_size(l.side);
-    return code(Status::kOk);
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        return reader.level_info(request, level_info);
+    });
 }
 
 gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
@@ -176,64 +102,18 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
                            float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
-    Level l;
-    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
-    if (l.header.layout == FileLayout::kCharts)
-        return code(decode_chart_mesh(l.header, span_of(bytes, size), limits_of(&info->limits), level,
-                                      {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
-    if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
-        return code(s);
-    const auto at = [&l](GridPoint p) { return (size_t{p.row} * l.side + p.column) * 3; };
-    for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
-        to_object(l.header, l.samples + at(p), positions + size_t{v} * 3, count);
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        return reader.mesh(request, {positions, normals, texcoords, triangles}, {scratch, scratch_bytes});
     });
-    if (normals) {
-        sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, l.ws.normals);
-        for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
-            std::copy_n(l.ws.normals + at(p), size_t{count} * 3, normals + size_t{v} * 3);
-        });
-    }
-    if (texcoords) {
-        const float last = static_cast<float>(l.side - 1);
-        for_each_run(l, [&](uint32_t v, GridPoint p, uint32_t count) {
-            for (uint32_t i = 0; i < count; ++i) {
-                texcoords[size_t{v + i} * 2] = static_cast<float>(p.column + i) / last;
-                texcoords[size_t{v + i} * 2 + 1] = static_cast<float>(p.row) / last;
-            }
-        });
-    }
-    if (triangles) {
-        const VertexNumbers numbers = {l.side, l.ws.class_of, l.class_count};
-        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.triangulate, triangles);
-    }
-    return code(Status::kOk);
 }
 
 gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                            float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
-    Level l;
-    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
-    if (l.header.layout == FileLayout::kCharts)
-        return code(decode_chart_grid(l.header, span_of(bytes, size), limits_of(&info->limits), level,
-                                      {positions, normals, texcoords, triangles}, {scratch, scratch_bytes}));
-    if (Status s = decode(span_of(bytes, size), image, level, {scratch, scratch_bytes}, &l); s != Status::kOk)
-        return code(s);
-    to_object(l.header, l.samples, positions, size_t{l.side} * l.side);
-    if (normals) sample_normals(l.samples, l.side, l.ws.class_of, l.class_count, l.ws.fuse.sums, normals);
-    if (texcoords) {
-        const float last = static_cast<float>(l.side - 1);
-        for (uint32_t i = 0; i < l.side * l.side; ++i) {
-            texcoords[size_t{i} * 2] = static_cast<float>(i % l.side) / last;
-            texcoords[size_t{i} * 2 + 1] = static_cast<float>(i / l.side) / last;
-        }
-    }
-    if (triangles) {
-        const VertexNumbers numbers = {l.side, nullptr, 0};
-        triangulate(l.samples, l.side, l.ws.class_of, numbers, l.ws.triangulate, triangles);
-    }
-    return code(Status::kOk);
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        return reader.grid(request, {positions, normals, texcoords, triangles}, {scratch, scratch_bytes});
+    });
 }
 
 gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, uint32_t i, gim_chunk* chunk) {
@@ -266,14 +146,7 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
 
 gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                           uint32_t* class_of, uint32_t* path_count) {
-    Level l;
-    if (Status s = open_image(info, bytes, size, image, &l.header); s != Status::kOk) return code(s);
-    if (l.header.layout == FileLayout::kCharts) {
-        if (class_of) return code(Status::kBadArgument);
-        return code(count_chart_paths(l.header, span_of(bytes, size), limits_of(&info->limits), level, path_count));
-    }
-    if (Status s = open_level(span_of(bytes, size), image, level, level, &l); s != Status::kOk) return code(s);
-    if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
-    if (path_count) *path_count = l.seams.path_count;
-    return code(Status::kOk);
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        return reader.seams(request, class_of, path_count);
+    });
 }

@@ -12,15 +12,6 @@ using namespace gim;
 
 namespace {
 
-// Finds the META chunk. False: there is none.
-bool find_text(const Header& header, Chunk* chunk, uint64_t* offset) {
-    ChunkWalk walk(header);
-    while (walk.next(chunk, offset)) {
-        if (chunk->type == ChunkType::kText) return true;
-    }
-    return false;
-}
-
 Status unpack(std::span<const uint8_t> payload, char* text, size_t size, void* scratch, size_t scratch_size) {
     if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return Status::kBadArgument;
     ZSTD_DCtx* context = ZSTD_initStaticDCtx(scratch, scratch_size);
@@ -36,7 +27,7 @@ Status read_text(const gim_info* info, const void* bytes, size_t size, char* tex
     uint64_t offset = 0;
     if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return s;
     *text_size = 0;
-    if (!find_text(header, &chunk, &offset)) return Status::kOk;
+    if (!find_chunk(header, ChunkType::kText, &chunk, &offset)) return Status::kOk;
     *text_size = chunk.raw_size;
     if (!text) return Status::kOk;
     if (capacity < chunk.raw_size) return Status::kScratchTooSmall;

@@ -214,4 +214,28 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
     return file;
 }
 
+bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset) {
+    ChunkWalk walk(header);
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == type) return true;
+    }
+    return false;
+}
+
+Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload) {
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (!find_chunk(header, ChunkType::kSeams, &chunk, &offset)) return Status::kMalformed;
+    return read_payload(file, chunk, offset, payload);
+}
+
+Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset) {
+    ChunkWalk walk(header);
+    uint32_t next = header.level_count;
+    while (walk.next(chunk, offset)) {
+        if (chunk->type == ChunkType::kLevel && --next == level) return Status::kOk;
+    }
+    return Status::kMalformed;
+}
+
 }  // namespace gim

@@ -124,4 +124,13 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 // Bytes from the magic number to the index's checksum. Derived header fields are ignored.
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks);
 
+// The first chunk of a type. False where there is none.
+bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset);
+
+// The payload of the SEAM chunk.
+Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload);
+
+// The chunk that holds a level of all images.
+Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
+
 }  // namespace gim

@@ -5,19 +5,17 @@
 
 #include <cstdint>
 
+#include "format/close_seams.h"
+
 namespace gim {
 
 // Work space of fuse.
-struct FuseWork {
-    float* sums = nullptr;        // 3 per class: sum of the differences to the class's first sample
-    uint32_t* first = nullptr;    // per class: ring index of its first sample
-    uint32_t* members = nullptr;  // per class: how many
-    float* outer = nullptr;       // corrections of one ring, 3 per ring sample
-    float* inner = nullptr;       // and of the next
+struct FuseWork : PointWork {
+    float* outer = nullptr;  // corrections of one ring, 3 per ring sample
+    float* inner = nullptr;  // and of the next
 };
 
-// Only the mean over each class, as first + sum(differences) / members: exact when all are equal. The corrections are left
-// in work.outer. Returns false when no sample changes. Cost O(side).
+// Only the mean over each class. The corrections are left in work.outer. Returns false when no sample changes. Cost O(side).
 bool average_classes(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples,
                      const FuseWork& work);
 

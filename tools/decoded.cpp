@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gim/decoder.hpp"
+
 namespace gim {
 namespace {
 
@@ -9,23 +11,40 @@ Error failed(const std::string& what, gim_status status) {
     return {Stage::kInput, what + ": " + describe_status(status)};
 }
 
-// Scratch memory must be 16-byte aligned.
-struct alignas(16) Block {
-    uint8_t bytes[16];
-};
-
 // Nothing where the file has no such plane.
-gim_status decode_plane(const gim_info& info, const Bytes& file, uint32_t image, uint32_t kind, ImagePlane* plane) {
-    gim_plane_info shape;
-    const gim_status status = gim_read_plane_info(&info, file.data(), file.size(), image, kind, 0, &shape);
+gim_status decode_plane(Decoder& decoder, uint32_t image, uint32_t kind, ImagePlane* plane) {
+    DecoderPlane shape;
+    const gim_status status = decoder.read_plane(image, kind, 0, &shape);
     if (status == GIM_NO_SUCH_PLANE) return GIM_OK;
     if (status != GIM_OK) return status;
     plane->columns = shape.width;
     plane->rows = shape.height;
     plane->values.resize(size_t{3} * shape.width * shape.height);
-    std::vector<Block> scratch(shape.scratch_size / sizeof(Block) + 1);
-    return gim_decode_plane(&info, file.data(), file.size(), image, kind, 0, plane->values.data(), scratch.data(),
-                            shape.scratch_size);
+    return decoder.plane(shape, plane->values);
+}
+
+// The level, or the coarsest one that the image has.
+gim_status decode_image(Decoder& decoder, uint32_t index, uint32_t level, DecodedImage* image) {
+    DecoderLevel shape;
+    gim_status status = decoder.read_level(index, 0, &shape);
+    if (status != GIM_OK) return status;
+    image->level = std::min(level, shape.coarsest_level);
+    status = decoder.read_level(index, image->level, &shape);
+    if (status != GIM_OK) return status;
+    image->columns = shape.width;
+    image->rows = shape.height;
+    const size_t samples = size_t{shape.width} * shape.height;
+    image->grid.resize(3 * samples);
+    image->grid_normals.resize(3 * samples);
+    image->grid_texcoords.resize(2 * samples);
+    image->grid_triangles.resize(size_t{3} * shape.triangle_count);
+    image->positions.resize(size_t{3} * shape.vertex_count);
+    image->normals.resize(size_t{3} * shape.vertex_count);
+    image->texcoords.resize(size_t{2} * shape.vertex_count);
+    image->triangles.resize(size_t{3} * shape.triangle_count);
+    status = decoder.grid(shape, {image->grid, image->grid_normals, image->grid_texcoords, image->grid_triangles});
+    if (status != GIM_OK) return status;
+    return decoder.mesh(shape, {image->positions, image->normals, image->texcoords, image->triangles});
 }
 
 }  // namespace
@@ -45,54 +64,25 @@ std::string describe_status(gim_status status) {
     }
 }
 
-bool is_gim(const Bytes& file) {
-    gim_info info;
-    return !file.empty() && gim_read_info(file.data(), file.size(), nullptr, &info) != GIM_NOT_GIM;
-}
+bool is_gim(const Bytes& file) { return !file.empty() && Decoder().open(file) != GIM_NOT_GIM; }
 
 Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes) {
-    gim_info info;
-    gim_status status = gim_read_info(file.data(), file.size(), nullptr, &info);
+    Decoder decoder;
+    gim_status status = decoder.open(file);
     if (status != GIM_OK) return failed("header", status);
 
-    std::vector<DecodedImage> images(info.image_count);
-    std::vector<Block> scratch;
+    std::vector<DecodedImage> images(decoder.info().image_count);
     uint32_t reached = 0;
-    for (uint32_t i = 0; i < info.image_count; ++i) {
+    for (uint32_t i = 0; i < images.size(); ++i) {
         const std::string what = "image " + std::to_string(i);
         DecodedImage& image = images[i];
-        gim_level_info shape;
-        status = gim_read_level_info(&info, file.data(), file.size(), i, 0, &shape);
+        status = decode_image(decoder, i, level, &image);
         if (status != GIM_OK) return failed(what, status);
-        image.level = std::min(level, shape.coarsest_level);
         reached = std::max(reached, image.level);
-        status = gim_read_level_info(&info, file.data(), file.size(), i, image.level, &shape);
-        if (status != GIM_OK) return failed(what, status);
-
-        image.columns = shape.width;
-        image.rows = shape.height;
-        const size_t samples = size_t{shape.width} * shape.height;
-        image.grid.resize(3 * samples);
-        image.grid_normals.resize(3 * samples);
-        image.grid_texcoords.resize(2 * samples);
-        image.grid_triangles.resize(size_t{3} * shape.triangle_count);
-        image.positions.resize(size_t{3} * shape.vertex_count);
-        image.normals.resize(size_t{3} * shape.vertex_count);
-        image.texcoords.resize(size_t{2} * shape.vertex_count);
-        image.triangles.resize(size_t{3} * shape.triangle_count);
-        scratch.resize(shape.scratch_size / sizeof(Block) + 1);
-        status = gim_decode_grid(&info, file.data(), file.size(), i, image.level, image.grid.data(),
-                                 image.grid_normals.data(), image.grid_texcoords.data(), image.grid_triangles.data(),
-                                 scratch.data(), shape.scratch_size);
-        if (status != GIM_OK) return failed(what, status);
-        status = gim_decode_mesh(&info, file.data(), file.size(), i, image.level, image.positions.data(),
-                                 image.normals.data(), image.texcoords.data(), image.triangles.data(), scratch.data(),
-                                 shape.scratch_size);
-        if (status != GIM_OK) return failed(what, status);
         if (planes == WithPlanes::kNo) continue;
-        status = decode_plane(info, file, i, GIM_PLANE_NORMALS, &image.normal_map);
+        status = decode_plane(decoder, i, GIM_PLANE_NORMALS, &image.normal_map);
         if (status != GIM_OK) return failed(what + ", normal map", status);
-        status = decode_plane(info, file, i, GIM_PLANE_COLORS, &image.colors);
+        status = decode_plane(decoder, i, GIM_PLANE_COLORS, &image.colors);
         if (status != GIM_OK) return failed(what + ", colours", status);
     }
     if (reached < level) {

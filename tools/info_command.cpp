@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gim/decoder.hpp"
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
@@ -13,20 +14,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Level {
-    uint32_t level = 0;
-    gim_level_info shape = {};
-};
-
-struct Plane {
-    uint32_t kind = 0;
-    gim_plane_info shape = {};
-};
-
 struct Image {
-    std::vector<Level> levels;
+    std::vector<DecoderLevel> levels;
     uint32_t paths = 0;
-    std::vector<Plane> planes;
+    std::vector<DecoderPlane> planes;
     uint32_t seam_points = 0;  // surface points on the ring of level 0, mates counted once
 };
 
@@ -56,29 +47,28 @@ const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS 
 
 const char* plane_name(uint32_t kind) { return kind == GIM_PLANE_NORMALS ? "normals" : "colors"; }
 
-void add_image(const Bytes& file, uint32_t index, Description& d) {
+void add_image(const Decoder& decoder, uint32_t index, Description& d) {
     const std::string name = "image " + std::to_string(index);
     Image image;
-    gim_level_info shape;
+    DecoderLevel shape;
     gim_status status = GIM_OK;
     for (uint32_t level = 0; level < d.info.level_count; ++level) {
-        status = gim_read_level_info(&d.info, file.data(), file.size(), index, level, &shape);
+        status = decoder.read_level(index, level, &shape);
         if (status != GIM_OK) break;
-        image.levels.push_back({level, shape});
+        image.levels.push_back(shape);
     }
     if (status != GIM_OK && status != GIM_NO_SUCH_LEVEL) d.problems.push_back(name + ": " + describe_status(status));
     if (!image.levels.empty()) {
-        const gim_level_info& full = image.levels[0].shape;
+        const DecoderLevel& full = image.levels[0];
         // Charts have no ring.
         std::vector<uint32_t> class_of(full.side > 0 ? size_t{4} * (full.side - 1) : 0);
-        status = gim_read_seams(&d.info, file.data(), file.size(), index, 0,
-                                class_of.empty() ? nullptr : class_of.data(), &image.paths);
+        status = decoder.seams(full, class_of, &image.paths);
         if (status != GIM_OK) d.problems.push_back(name + ", seams: " + describe_status(status));
         image.seam_points = static_cast<uint32_t>(std::set<uint32_t>(class_of.begin(), class_of.end()).size());
     }
     for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
-        Plane plane{kind, {}};
-        status = gim_read_plane_info(&d.info, file.data(), file.size(), index, kind, 0, &plane.shape);
+        DecoderPlane plane;
+        status = decoder.read_plane(index, kind, 0, &plane);
         if (status == GIM_NO_SUCH_PLANE) continue;
         if (status != GIM_OK) d.problems.push_back(name + ", " + plane_name(kind) + ": " + describe_status(status));
         if (status == GIM_OK) image.planes.push_back(plane);
@@ -88,19 +78,16 @@ void add_image(const Bytes& file, uint32_t index, Description& d) {
 
 constexpr uint64_t kMostText = 1 << 20;
 
-void add_text(const Bytes& file, Description& d) {
+void add_text(Decoder& decoder, Description& d) {
     uint64_t size = 0;
-    gim_status status = gim_read_text(&d.info, file.data(), file.size(), nullptr, 0, &size, nullptr, 0);
+    gim_status status = decoder.read_text_size(&size);
     if (status == GIM_OK && size > kMostText) {
         d.problems.push_back("its text claims " + std::to_string(size) + " bytes");
         return;
     }
     if (status == GIM_OK && size > 0) {
-        Bytes scratch(gim_text_scratch_size() + 16);
-        const size_t skew = (16 - reinterpret_cast<uintptr_t>(scratch.data()) % 16) % 16;
         d.text.resize(size);
-        status = gim_read_text(&d.info, file.data(), file.size(), d.text.data(), d.text.size(), &size,
-                               scratch.data() + skew, scratch.size() - skew);
+        status = decoder.text(d.text);
     }
     // It comes from anywhere: nothing of it may steer a terminal.
     for (char& c : d.text) {
@@ -114,14 +101,16 @@ void add_text(const Bytes& file, Description& d) {
 
 Result<Description> describe(const Bytes& file) {
     Description d;
-    const gim_status status = gim_read_info(file.data(), file.size(), nullptr, &d.info);
+    Decoder decoder;
+    const gim_status status = decoder.open(file);
     if (status != GIM_OK) return Error{Stage::kInput, describe_status(status)};
+    d.info = decoder.info();
     d.actual_size = file.size();
-    for (uint32_t i = 0; i < d.info.image_count; ++i) add_image(file, i, d);
+    for (uint32_t i = 0; i < d.info.image_count; ++i) add_image(decoder, i, d);
 
     uint32_t damaged = 0;
     gim_chunk chunk;
-    for (uint32_t i = 0; gim_read_chunk(&d.info, file.data(), file.size(), i, &chunk) == GIM_OK; ++i) {
+    for (uint32_t i = 0; decoder.read_chunk(i, &chunk) == GIM_OK; ++i) {
         damaged += chunk.intact == 0 ? 1 : 0;
         d.chunks.push_back(chunk);
     }
@@ -133,7 +122,7 @@ Result<Description> describe(const Bytes& file) {
         d.problems.push_back("the index tells of " + std::to_string(d.info.file_size) + " bytes, the file has " +
                              std::to_string(d.actual_size));
     }
-    if (damaged == 0) add_text(file, d);
+    if (damaged == 0) add_text(decoder, d);
     if (d.problems.empty()) {
         const Result<std::vector<DecodedImage>> decoded = decode_images(file, 0);
         if (!decoded.ok()) d.problems.push_back("decoding fails: " + decoded.error().message);
@@ -150,22 +139,22 @@ void print_json(const std::string& path, const Description& d) {
     ordered_json images = ordered_json::array();
     for (const Image& image : d.images) {
         ordered_json levels = ordered_json::array();
-        for (const Level& level : image.levels) {
+        for (const DecoderLevel& level : image.levels) {
             levels.push_back({{"level", level.level},
-                              {"width", level.shape.width},
-                              {"height", level.shape.height},
-                              {"vertices", level.shape.vertex_count},
-                              {"triangles", level.shape.triangle_count},
-                              {"prefix_bytes", level.shape.prefix_size},
-                              {"scratch_bytes", level.shape.scratch_size}});
+                              {"width", level.width},
+                              {"height", level.height},
+                              {"vertices", level.vertex_count},
+                              {"triangles", level.triangle_count},
+                              {"prefix_bytes", level.prefix_size},
+                              {"scratch_bytes", level.scratch_size}});
         }
         ordered_json planes = ordered_json::array();
-        for (const Plane& plane : image.planes) {
+        for (const DecoderPlane& plane : image.planes) {
             planes.push_back({{"kind", plane_name(plane.kind)},
-                              {"width", plane.shape.width},
-                              {"height", plane.shape.height},
-                              {"bytes", plane.shape.stream_size},
-                              {"quantizer", plane.shape.quantizer}});
+                              {"width", plane.width},
+                              {"height", plane.height},
+                              {"bytes", plane.stream_size},
+                              {"quantizer", plane.quantizer}});
         }
         images.push_back(
             {{"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}});
@@ -226,17 +215,16 @@ void print_text(const std::string& path, const Description& d) {
         std::printf("image %zu: %u cut paths", i, image.paths);
         if (image.seam_points > 0) std::printf(", %u surface points on the ring", image.seam_points);
         std::printf("\n  level         size   vertices  triangles   bytes needed\n");
-        for (const Level& level : image.levels) {
-            std::printf("  %5u  %5u x %4u  %9u  %9u  %13llu\n", level.level, level.shape.width, level.shape.height,
-                        level.shape.vertex_count, level.shape.triangle_count,
-                        static_cast<unsigned long long>(level.shape.prefix_size));
+        for (const DecoderLevel& level : image.levels) {
+            std::printf("  %5u  %5u x %4u  %9u  %9u  %13llu\n", level.level, level.width, level.height,
+                        level.vertex_count, level.triangle_count, static_cast<unsigned long long>(level.prefix_size));
         }
     }
     for (size_t i = 0; i < d.images.size(); ++i) {
-        for (const Plane& plane : d.images[i].planes) {
-            std::printf("image %zu, %s: %u x %u, %llu bytes, quantizer %g\n", i, plane_name(plane.kind),
-                        plane.shape.width, plane.shape.height, static_cast<unsigned long long>(plane.shape.stream_size),
-                        static_cast<double>(plane.shape.quantizer));
+        for (const DecoderPlane& plane : d.images[i].planes) {
+            std::printf("image %zu, %s: %u x %u, %llu bytes, quantizer %g\n", i, plane_name(plane.kind), plane.width,
+                        plane.height, static_cast<unsigned long long>(plane.stream_size),
+                        static_cast<double>(plane.quantizer));
         }
     }
     std::printf("chunks\n");

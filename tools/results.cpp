@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "corpus/corpus.h"
+#include "gim/decoder.hpp"
 #include "tools/decoded.h"
 #include "tools/file.h"
 #include "tools/input.h"
@@ -56,23 +57,19 @@ std::optional<TriangleMesh> scanned_mesh(const std::string& name, const std::str
 // warm memory. Negative: it does not decode.
 double decode_milliseconds(const Bytes& file) {
     constexpr int kRuns = 20;
-    gim_info info;
-    if (gim_read_info(file.data(), file.size(), nullptr, &info) != GIM_OK) return -1;
+    Decoder decoder;
+    if (decoder.open(file) != GIM_OK) return -1;
     double sum = 0;
-    for (uint32_t image = 0; image < info.image_count; ++image) {
-        gim_level_info level;
-        if (gim_read_level_info(&info, file.data(), file.size(), image, 0, &level) != GIM_OK) return -1;
+    for (uint32_t image = 0; image < decoder.info().image_count; ++image) {
+        DecoderLevel level;
+        if (decoder.read_level(image, 0, &level) != GIM_OK) return -1;
         std::vector<float> positions(size_t{3} * level.vertex_count);
         std::vector<float> normals(positions.size());
         std::vector<uint32_t> triangles(size_t{3} * level.triangle_count);
-        std::vector<double> scratch(level.scratch_size / sizeof(double) + 2);  // new aligns to 16 bytes
         double best = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kRuns; ++i) {
             const auto begin = std::chrono::steady_clock::now();
-            if (gim_decode_mesh(&info, file.data(), file.size(), image, 0, positions.data(), normals.data(), nullptr,
-                                triangles.data(), scratch.data(), level.scratch_size) != GIM_OK) {
-                return -1;
-            }
+            if (decoder.mesh(level, {positions, normals, {}, triangles}) != GIM_OK) return -1;
             const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
             best = std::min(best, time.count());
         }

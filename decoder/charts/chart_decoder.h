@@ -54,9 +54,6 @@ struct ChartWorkspace {
     float* sums = nullptr;  // triples
 };
 
-// How many layers of samples inside a border get a part of its corrections.
-uint32_t chart_diffusion_width(uint32_t columns, uint32_t rows);
-
 Status open_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
                    ChartLevelShape* shape);
 

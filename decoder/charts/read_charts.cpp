@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "decoder/charts/chart_surface.h"
-#include "decoder/squares/square_decoder.h"
+#include "decoder/read_plane.h"
+#include "format/chart_table.h"
 
 namespace gim {
 namespace {
@@ -52,14 +53,15 @@ bool lie_in_grid(const ChartLevelShape& shape, const ChartWorkspace& ws) {
     return true;
 }
 
-Status decode(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits, uint32_t level,
-              const Memory& scratch, Surface* surface) {
-    if (Status s = open_charts(header, file, limits, level, &surface->shape); s != Status::kOk) return s;
-    if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
-    if (scratch.size < scratch_size(surface->shape)) return Status::kScratchTooSmall;
+Status decode(const LevelRequest& request, const Memory& scratch, Surface* surface) {
+    if (Status s = open_charts(request.header, request.file, request.limits, request.level, &surface->shape);
+        s != Status::kOk)
+        return s;
+    if (Status s = check_scratch(scratch, scratch_size(surface->shape)); s != Status::kOk) return s;
     Arena arena(scratch.bytes);
     surface->lay_out(&arena);
-    if (Status s = decode_charts(header, file, limits, surface->shape, surface->ws, &surface->samples);
+    if (Status s =
+            decode_charts(request.header, request.file, request.limits, surface->shape, surface->ws, &surface->samples);
         s != Status::kOk)
         return s;
     if (!lie_in_grid(surface->shape, surface->ws)) return Status::kMalformed;
@@ -70,17 +72,17 @@ Status decode(const Header& header, std::span<const uint8_t> file, const Contain
 
 }  // namespace
 
-Status chart_level_info(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                        uint32_t level, gim_level_info* info) {
+Status chart_level_info(const LevelRequest& request, gim_level_info* info) {
     ChartLevelShape shape;
-    if (Status s = open_charts(header, file, limits, level, &shape); s != Status::kOk) return s;
+    if (Status s = open_charts(request.header, request.file, request.limits, request.level, &shape); s != Status::kOk)
+        return s;
     Chunk chunk;
     uint64_t offset = 0;
-    if (Status s = find_level_chunk(header, level, &chunk, &offset); s != Status::kOk) return s;
+    if (Status s = find_level_chunk(request.header, request.level, &chunk, &offset); s != Status::kOk) return s;
     *info = {};
     info->width = shape.columns;
     info->height = shape.rows;
-    info->coarsest_level = header.level_count - 1;
+    info->coarsest_level = request.header.level_count - 1;
     info->vertex_count = shape.size.vertices;
     info->triangle_count = shape.size.triangles;
     info->prefix_size = offset + chunk.size;
@@ -88,22 +90,24 @@ Status chart_level_info(const Header& header, std::span<const uint8_t> file, con
     return Status::kOk;
 }
 
-Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, uint32_t* path_count) {
+Status read_chart_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count) {
+    if (class_of) return Status::kBadArgument;
     ChartLevelShape shape;
-    if (Status s = open_charts(header, file, limits, level, &shape); s != Status::kOk) return s;
+    if (Status s = open_charts(request.header, request.file, request.limits, request.level, &shape); s != Status::kOk)
+        return s;
     if (path_count) *path_count = shape.path_count;
     return Status::kOk;
 }
 
-Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, const SurfaceArrays& out, const Memory& scratch) {
+Status decode_chart_mesh(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
     Surface surface;
-    if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
+    if (Status s = decode(request, scratch, &surface); s != Status::kOk) return s;
+    const Header& header = request.header;
+    const uint32_t level = request.level;
     const ChartLevelShape& shape = surface.shape;
     for_each_chart_vertex(
         shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row, uint32_t sample) {
-            to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
+            to_object(header.origin, header.step, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
             if (out.texcoords)
                 set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
         });
@@ -115,10 +119,11 @@ Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, co
     return Status::kOk;
 }
 
-Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, const SurfaceArrays& out, const Memory& scratch) {
+Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
     Surface surface;
-    if (Status s = decode(header, file, limits, level, scratch, &surface); s != Status::kOk) return s;
+    if (Status s = decode(request, scratch, &surface); s != Status::kOk) return s;
+    const Header& header = request.header;
+    const uint32_t level = request.level;
     const ChartLevelShape& shape = surface.shape;
     const size_t count = size_t{shape.columns} * shape.rows * 3;
     std::fill_n(out.positions, count, std::numeric_limits<float>::quiet_NaN());
@@ -135,7 +140,8 @@ Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, co
             if (surface.ws.depth[sample] == kUndefined) continue;
             const uint32_t column = chart.grid_column + i % chart.columns, row = chart.grid_row + i / chart.columns;
             place[sample] = row * shape.columns + column;
-            to_object(header, surface.samples + size_t{sample} * 3, out.positions + size_t{place[sample]} * 3);
+            to_object(header.origin, header.step, surface.samples + size_t{sample} * 3,
+                      out.positions + size_t{place[sample]} * 3);
             if (out.texcoords)
                 set_texcoords(header, chart.box, (i % chart.columns) << level, (i / chart.columns) << level,
                               out.texcoords + size_t{place[sample]} * 2);
@@ -149,5 +155,27 @@ Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, co
     }
     return Status::kOk;
 }
+
+Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
+    if (Status s = read_plane_chunk(request, chunk, offset, plane); s != Status::kOk) return s;
+    const uint32_t exponent = plane->chunk.side_exponents[request.image];
+    const auto width = static_cast<uint32_t>(chart_plane_side(request.header.width, exponent)),
+               height = static_cast<uint32_t>(chart_plane_side(request.header.height, exponent));
+    plane->coarsest = halvings(width, height);
+    if (request.level > plane->coarsest) return Status::kNoSuchLevel;
+    plane->width = halved(width, request.level);
+    plane->height = halved(height, request.level);
+    plane->shape = {width, height, plane->coarsest, request.level, {plane->chunk.quantizer}, 0, false};
+    return Status::kOk;
+}
+
+PlaneWorkspace lay_out_chart_plane(const PlaneLevel& plane, Arena* arena) {
+    PlaneWorkspace ws;
+    lay_out_coder(plane.width, arena, &ws.pyramid);
+    lay_out_planes(plane.width, plane.height, arena, &ws.pyramid);
+    return ws;
+}
+
+void close_chart_plane(const PlaneLevel&, const PlaneWorkspace&, float*) {}
 
 }  // namespace gim

@@ -1,35 +1,19 @@
 // The calls of the C interface for files of charts.
 #pragma once
 
-#include <cstddef>
-#include <span>
-
-#include "format/container.h"
-#include "gim/decoder.h"
+#include "decoder/level_reader.h"
 
 namespace gim {
 
-struct Memory {
-    void* bytes = nullptr;
-    size_t size = 0;
-};
+Status chart_level_info(const LevelRequest& request, gim_level_info* info);
+Status decode_chart_mesh(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+// Charts have no ring: class_of must be nullptr.
+Status read_chart_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
-Status chart_level_info(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                        uint32_t level, gim_level_info* info);
-
-Status count_chart_paths(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, uint32_t* path_count);
-
-// What gim_decode_mesh and gim_decode_grid give.
-struct SurfaceArrays {
-    float* positions = nullptr;
-    float* normals = nullptr;  // may be nullptr, as all below
-    float* texcoords = nullptr;
-    uint32_t* triangles = nullptr;
-};
-Status decode_chart_mesh(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, const SurfaceArrays& out, const Memory& scratch);
-Status decode_chart_grid(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
-                         uint32_t level, const SurfaceArrays& out, const Memory& scratch);
+Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
+PlaneWorkspace lay_out_chart_plane(const PlaneLevel& plane, Arena* arena);
+// Changes nothing: the encoder fills planes beyond the charts' borders, and no sample belongs to two of them.
+void close_chart_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
 
 }  // namespace gim

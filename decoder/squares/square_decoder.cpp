@@ -1,6 +1,7 @@
 #include "decoder/squares/square_decoder.h"
 
-#include <algorithm>
+#include <array>
+#include <new>
 
 #include "format/sideband_code.h"
 
@@ -54,22 +55,6 @@ Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint3
 
 }  // namespace
 
-void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
-    const uint32_t low_columns = low_count(columns), low_rows = low_count(rows);
-    const size_t all = size_t{columns} * rows * 3, low = size_t{low_columns} * low_rows * 3;
-    // Less would do for bands, but a base is read into their place.
-    ws->bands[0] = arena->take<int32_t>(all);
-    ws->bands[1] = arena->take<int32_t>(low);
-    ws->images[0] = arena->take<float>(all);
-    ws->images[1] = arena->take<float>(low);
-}
-
-void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws) {
-    ws->models = arena->take<BandModels>(1);
-    ws->band_work = BandWork(arena->take<uint32_t>(BandWork::size(columns)), columns);
-    ws->synthesis = arena->take<float>(synthesis_work_size(columns));
-}
-
 PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     const size_t ring = ring_length(side);
     PlaneWorkspace ws;
@@ -105,21 +90,6 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
     return Status::kOk;
 }
 
-bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset) {
-    ChunkWalk walk(header);
-    while (walk.next(chunk, offset)) {
-        if (chunk->type == type) return true;
-    }
-    return false;
-}
-
-Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload) {
-    Chunk chunk;
-    uint64_t offset = 0;
-    if (!find_chunk(header, ChunkType::kSeams, &chunk, &offset)) return Status::kMalformed;
-    return read_payload(file, chunk, offset, payload);
-}
-
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams) {
     std::span<const uint8_t> payload;
     if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
@@ -136,15 +106,6 @@ Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t 
             return s;
         return level_is_closed(*seams, header.side(image)) ? Status::kOk : Status::kMalformed;
     }
-}
-
-Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset) {
-    ChunkWalk walk(header);
-    uint32_t next = header.level_count;
-    while (walk.next(chunk, offset)) {
-        if (chunk->type == ChunkType::kLevel && --next == level) return Status::kOk;
-    }
-    return Status::kMalformed;
 }
 
 }  // namespace gim

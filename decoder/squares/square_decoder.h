@@ -2,25 +2,17 @@
 // A "unit" is one quantization step; position = origin + step * unit value.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "decoder/arena.h"
+#include "decoder/plane_level.h"
 #include "decoder/pyramid_decoder.h"
 #include "decoder/squares/triangulate.h"
 #include "format/container.h"
-#include "format/fuse.h"
 #include "format/seam.h"
 
 namespace gim {
-
-// What decoding a plane of samples and making the two sides of its seams equal needs, laid out in the caller's scratch.
-struct PlaneWorkspace {
-    PyramidWorkspace pyramid;
-    uint32_t* class_of = nullptr;
-    FuseWork fuse;
-};
 
 // Everything that decoding one level of an image needs.
 struct ImageWorkspace : PlaneWorkspace {
@@ -45,22 +37,5 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
 
 // The sideband of one image, checked. kMalformed also when its finest level is not closed.
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams);
-
-// Units to object space: `count` triples.
-inline void to_object(const Header& header, const float* units, float* __restrict positions, size_t count = 1) {
-    const std::array<float, 3> origin = header.origin;
-    const float step = header.step;
-    for (size_t i = 0; i < count; ++i)
-        for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
-}
-
-// The first chunk of a type; false where there is none.
-bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset);
-
-// The payload of the SEAM chunk.
-Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload);
-
-// The chunk that holds a level of all images.
-Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
 
 }  // namespace gim

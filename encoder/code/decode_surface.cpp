@@ -4,30 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "encoder/base/result.h"
-#include "gim/decoder.h"
-
 namespace gim {
 
 namespace {
 
-Error decoding_error(gim_status status) {
-    return {Stage::kCode, std::string("own output: ") + gim_status_text(status)};
-}
-
-gim_status append_image(std::span<const uint8_t> bytes, const gim_info& info, uint32_t image, uint32_t level,
-                        Mesh& mesh) {
-    gim_level_info size;
-    gim_status status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, 0, &size);
+gim_status append_image(Decoder& decoder, uint32_t image, uint32_t level, Mesh& mesh) {
+    DecoderLevel size;
+    gim_status status = decoder.read_level(image, 0, &size);
     if (status != GIM_OK) return status;
-    level = std::min(level, size.coarsest_level);
-    status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, level, &size);
+    status = decoder.read_level(image, std::min(level, size.coarsest_level), &size);
     if (status != GIM_OK) return status;
     std::vector<float> positions(size_t{size.vertex_count} * 3);
     std::vector<uint32_t> triangles(size_t{size.triangle_count} * 3);
-    std::vector<uint8_t> scratch(size.scratch_size);
-    status = gim_decode_mesh(&info, bytes.data(), bytes.size(), image, level, positions.data(), nullptr, nullptr,
-                             triangles.data(), scratch.data(), scratch.size());
+    status = decoder.mesh(size, {positions, {}, {}, triangles});
     if (status != GIM_OK) return status;
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     for (size_t v = 0; v < positions.size(); v += 3)
@@ -40,21 +29,29 @@ gim_status append_image(std::span<const uint8_t> bytes, const gim_info& info, ui
 
 }  // namespace
 
-Result<gim_info> read_own_info(std::span<const uint8_t> bytes) {
+Error decoding_error(Stage stage, gim_status status) {
+    return {stage, std::string("own output: ") + gim_status_text(status)};
+}
+
+gim_status open_own_file(std::span<const uint8_t> bytes, Decoder* decoder) {
     const gim_limits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    gim_info info;
-    const gim_status status = gim_read_info(bytes.data(), bytes.size(), &no_limits, &info);
-    if (status != GIM_OK) return decoding_error(status);
-    return info;
+    return decoder->open(bytes, &no_limits);
+}
+
+Result<gim_info> read_own_info(std::span<const uint8_t> bytes) {
+    Decoder decoder;
+    const gim_status status = open_own_file(bytes, &decoder);
+    if (status != GIM_OK) return decoding_error(Stage::kCode, status);
+    return decoder.info();
 }
 
 Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level) {
-    GIM_TRY(info, read_own_info(bytes));
+    Decoder decoder;
     Mesh mesh;
-    for (uint32_t image = 0; image < info.image_count; ++image) {
-        const gim_status status = append_image(bytes, info, image, level, mesh);
-        if (status != GIM_OK) return decoding_error(status);
-    }
+    gim_status status = open_own_file(bytes, &decoder);
+    for (uint32_t image = 0; status == GIM_OK && image < decoder.info().image_count; ++image)
+        status = append_image(decoder, image, level, mesh);
+    if (status != GIM_OK) return decoding_error(Stage::kCode, status);
     return mesh;
 }
 
@@ -65,14 +62,15 @@ Result<Comparison> compare_file(std::span<const uint8_t> bytes, const ReferenceS
 }
 
 Result<uint32_t> coarsest_level(std::span<const uint8_t> bytes) {
-    GIM_TRY(info, read_own_info(bytes));
-    uint32_t coarsest = info.level_count - 1;
-    for (uint32_t image = 0; image < info.image_count; ++image) {
-        gim_level_info size;
-        const gim_status status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, 0, &size);
-        if (status != GIM_OK) return decoding_error(status);
+    Decoder decoder;
+    gim_status status = open_own_file(bytes, &decoder);
+    uint32_t coarsest = decoder.info().level_count - 1;
+    for (uint32_t image = 0; status == GIM_OK && image < decoder.info().image_count; ++image) {
+        DecoderLevel size;
+        status = decoder.read_level(image, 0, &size);
         coarsest = std::min(coarsest, size.coarsest_level);
     }
+    if (status != GIM_OK) return decoding_error(Stage::kCode, status);
     return coarsest;
 }
 

@@ -6,7 +6,6 @@
 
 #include "encoder/base/result.h"
 #include "encoder/code/decode_surface.h"
-#include "gim/decoder.h"
 
 namespace gim {
 
@@ -15,20 +14,20 @@ namespace {
 constexpr uint32_t kSamples = 100000;  // each way; enough for half a decibel many times over
 
 // The sizes of one level; width 0 where no image has it.
-Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_info& info, uint32_t level) {
+Result<LevelReport> describe_level(const Decoder& decoder, uint32_t level) {
     LevelReport report;
     report.level = level;
-    for (uint32_t image = 0; image < info.image_count; ++image) {
-        gim_level_info shape;
-        gim_status status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, 0, &shape);
+    for (uint32_t image = 0; image < decoder.info().image_count; ++image) {
+        DecoderLevel shape;
+        gim_status status = decoder.read_level(image, 0, &shape);
         if (status == GIM_OK && shape.coarsest_level < level) {
-            status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, shape.coarsest_level, &shape);
+            status = decoder.read_level(image, shape.coarsest_level, &shape);
         } else if (status == GIM_OK) {
-            status = gim_read_level_info(&info, bytes.data(), bytes.size(), image, level, &shape);
+            status = decoder.read_level(image, level, &shape);
             report.width = std::max(report.width, shape.width);
             report.height = std::max(report.height, shape.height);
         }
-        if (status != GIM_OK) return Error{Stage::kCode, std::string("own output: ") + gim_status_text(status)};
+        if (status != GIM_OK) return decoding_error(Stage::kCode, status);
         report.vertices += shape.vertex_count;
         report.triangles += shape.triangle_count;
         report.prefix_bytes = std::max(report.prefix_bytes, shape.prefix_size);
@@ -37,10 +36,10 @@ Result<LevelReport> describe_level(std::span<const uint8_t> bytes, const gim_inf
 }
 
 uint64_t sideband_size(std::span<const uint8_t> bytes) {
-    gim_info info;
-    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return 0;
+    Decoder decoder;
+    if (decoder.open(bytes) != GIM_OK) return 0;
     gim_chunk chunk;
-    for (uint32_t i = 0; gim_read_chunk(&info, bytes.data(), bytes.size(), i, &chunk) == GIM_OK; ++i) {
+    for (uint32_t i = 0; decoder.read_chunk(i, &chunk) == GIM_OK; ++i) {
         if (std::string_view(chunk.name) == "SEAM") return chunk.size;
     }
     return 0;
@@ -50,13 +49,15 @@ uint64_t sideband_size(std::span<const uint8_t> bytes) {
 
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
                                                 const Comparison& full, uint32_t threads) {
-    GIM_TRY(info, read_own_info(bytes));
+    Decoder decoder;
+    if (const gim_status status = open_own_file(bytes, &decoder); status != GIM_OK)
+        return decoding_error(Stage::kCode, status);
     CompareOptions options;
     options.samples = kSamples;
     options.threads = threads;
     std::vector<LevelReport> levels;
-    for (uint32_t level = 0; level < info.level_count; ++level) {
-        GIM_TRY(report, describe_level(bytes, info, level));
+    for (uint32_t level = 0; level < decoder.info().level_count; ++level) {
+        GIM_TRY(report, describe_level(decoder, level));
         if (report.width == 0) break;
         report.psnr = full.psnr;
         if (level > 0) {

@@ -11,7 +11,7 @@
 #include "encoder/code/code_bands.h"
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/write_squares.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 
 namespace gim {
 namespace {
@@ -54,18 +54,14 @@ std::vector<uint8_t> coded(bool lossless, double quantizer) {
 }
 
 void whole_decode(benchmark::State& state, const std::vector<uint8_t>& bytes, bool normals) {
-    gim_info info;
-    gim_level_info level;
-    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK ||
-        gim_read_level_info(&info, bytes.data(), bytes.size(), 0, 0, &level) != GIM_OK)
+    Decoder decoder;
+    DecoderLevel level;
+    if (decoder.open(bytes) != GIM_OK || decoder.read_level(0, 0, &level) != GIM_OK)
         return state.SkipWithError("cannot be read");
-    std::vector<float> x(level.vertex_count * 3), n(x.size());
+    std::vector<float> x(level.vertex_count * 3), n(normals ? x.size() : 0);
     std::vector<uint32_t> t(level.triangle_count * 3);
-    std::vector<std::max_align_t> scratch(level.scratch_size / sizeof(std::max_align_t) + 1);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(gim_decode_mesh(&info, bytes.data(), bytes.size(), 0, 0, x.data(),
-                                                 normals ? n.data() : nullptr, nullptr, t.data(), scratch.data(),
-                                                 level.scratch_size));
+        benchmark::DoNotOptimize(decoder.mesh(level, {x, n, {}, t}));
     }
     state.counters["bytes"] = static_cast<double>(bytes.size());
     state.counters["Mtri/s"] =

@@ -11,7 +11,7 @@
 #include "encoder/squares/parametrize.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/surface/clean.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -40,19 +40,14 @@ std::vector<uint8_t> coded(bool lossless) {
 
 void decode_mesh(benchmark::State& state, bool lossless, uint32_t level) {
     const std::vector<uint8_t> bytes = coded(lossless);
-    gim_info info;
-    gim_level_info shape;
-    if (gim_read_info(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return state.SkipWithError("info");
-    if (gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape) != GIM_OK)
-        return state.SkipWithError("level");
+    Decoder decoder;
+    DecoderLevel shape;
+    if (decoder.open(bytes) != GIM_OK) return state.SkipWithError("info");
+    if (decoder.read_level(0, level, &shape) != GIM_OK) return state.SkipWithError("level");
     std::vector<float> positions(size_t{shape.vertex_count} * 3);
     std::vector<uint32_t> triangles(size_t{shape.triangle_count} * 3);
-    std::vector<std::max_align_t> scratch(shape.scratch_size / sizeof(std::max_align_t) + 1);
     for (auto _ : state) {
-        const gim_status status =
-            gim_decode_mesh(&info, bytes.data(), bytes.size(), 0, level, positions.data(), nullptr, nullptr,
-                            triangles.data(), scratch.data(), shape.scratch_size);
-        if (status != GIM_OK) return state.SkipWithError("decode");
+        if (decoder.mesh(shape, {positions, {}, {}, triangles}) != GIM_OK) return state.SkipWithError("decode");
         benchmark::DoNotOptimize(positions.data());
     }
     state.counters["triangles/s"] =

@@ -53,10 +53,9 @@ TEST(Allocation, NoCallOfTheDecoderAllocates) {
         const bool has_ring = info.layout == GIM_LAYOUT_GIM;
         std::vector<float> x(samples * 3), n(samples * 3), uv(samples * 2);
         std::vector<uint32_t> t(level.triangle_count * 3), ring(4 * level.side);
-        std::vector<std::max_align_t> scratch(
-            (level.scratch_size + gim_text_scratch_size()) / sizeof(std::max_align_t) + 1);
+        Scratch scratch(level.scratch_size + gim_text_scratch_size());
         std::string text(100000, '\0');
-        const size_t room = scratch.size() * sizeof(std::max_align_t);
+        const size_t room = scratch.size();
         const uint64_t before = allocations;
 
         // This counts at all.

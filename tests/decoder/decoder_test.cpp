@@ -1,4 +1,4 @@
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,6 @@ std::vector<uint8_t> vector_file(const std::string& name) {
     EXPECT_FALSE(bytes.empty()) << name;
     return bytes;
 }
-
-struct Scratch {
-    explicit Scratch(size_t size) : memory(size / sizeof(std::max_align_t) + 1) {}
-    void* data() { return memory.data(); }
-    std::vector<std::max_align_t> memory;
-};
 
 struct Opened {
     std::vector<uint8_t> bytes;
@@ -133,8 +127,8 @@ TEST(Decoder, WritesNothingBeyondItsOutputs) {
     // Exact allocations: the address sanitizer sees one element too far; without it the guards do.
     std::vector<float> mesh(f.level.vertex_count * 3 + 1, 7.0f), normals(f.level.vertex_count * 3 + 1, 7.0f);
     std::vector<uint32_t> triangles(f.level.triangle_count * 3 + 1, 7u);
-    std::vector<std::max_align_t> scratch(f.level.scratch_size / sizeof(std::max_align_t) + 2);
-    auto* guard = reinterpret_cast<uint8_t*>(scratch.data()) + f.level.scratch_size;
+    Scratch scratch(f.level.scratch_size + 16);
+    uint8_t* guard = static_cast<uint8_t*>(scratch.data()) + f.level.scratch_size;
     std::fill_n(guard, 16, uint8_t{0xCD});
     ASSERT_EQ(gim_decode_mesh(&f.info, f.bytes.data(), f.bytes.size(), 0, 0, mesh.data(), normals.data(), nullptr,
                               triangles.data(), scratch.data(), f.level.scratch_size),
@@ -148,9 +142,9 @@ TEST(Decoder, WritesNothingBeyondItsOutputs) {
 TEST(Decoder, ContentsOfScratchDoNotMatter) {
     const Opened f(vector_file("torus-33-lossy"));
     std::vector<float> zeros(size_t{f.level.side} * f.level.side * 3), ones = zeros;
-    std::vector<std::max_align_t> scratch(f.level.scratch_size / sizeof(std::max_align_t) + 1);
+    Scratch scratch(f.level.scratch_size);
     for (auto* out : {&zeros, &ones}) {
-        std::memset(scratch.data(), out == &ones ? 0xFF : 0, scratch.size() * sizeof(std::max_align_t));
+        std::memset(scratch.data(), out == &ones ? 0xFF : 0, scratch.size());
         ASSERT_EQ(gim_decode_positions(&f.info, f.bytes.data(), f.bytes.size(), 0, 0, out->data(), scratch.data(),
                                        f.level.scratch_size),
                   GIM_OK);

@@ -7,7 +7,7 @@
 #include "format/container.h"
 #include "format/plane_code.h"
 #include "format/ring.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tests/decoder/vectors.h"
 
 namespace gim {
@@ -46,20 +46,17 @@ Bytes with_plane(const Bytes& file, ChunkType type, const std::function<void(Byt
 
 struct Plane {
     gim_status status = GIM_OK;
-    gim_plane_info info{};
+    DecoderPlane info;
     std::vector<float> values;
 };
 Plane decode(const Bytes& file, uint32_t kind, uint32_t level = 0, uint32_t image = 0) {
     Plane plane;
-    gim_info info;
-    plane.status = gim_read_info(file.data(), file.size(), nullptr, &info);
-    if (plane.status == GIM_OK)
-        plane.status = gim_read_plane_info(&info, file.data(), file.size(), image, kind, level, &plane.info);
+    Decoder decoder;
+    plane.status = decoder.open(file);
+    if (plane.status == GIM_OK) plane.status = decoder.read_plane(image, kind, level, &plane.info);
     if (plane.status != GIM_OK) return plane;
-    plane.values.resize(size_t{plane.info.width} * plane.info.width * 3);
-    std::vector<std::max_align_t> scratch(plane.info.scratch_size / sizeof(std::max_align_t) + 1);
-    plane.status = gim_decode_plane(&info, file.data(), file.size(), image, kind, level, plane.values.data(),
-                                    scratch.data(), plane.info.scratch_size);
+    plane.values.resize(size_t{plane.info.width} * plane.info.height * 3);
+    plane.status = decoder.plane(plane.info, plane.values);
     return plane;
 }
 
@@ -121,7 +118,7 @@ TEST(ReadPlane, RefusesSmallScratchAndNullPointers) {
     ASSERT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
     ASSERT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 0, 1, 0, &plane), GIM_OK);
     std::vector<float> values(size_t{plane.width} * plane.height * 3);
-    std::vector<std::max_align_t> scratch(plane.scratch_size / sizeof(std::max_align_t) + 1);
+    Scratch scratch(plane.scratch_size);
     const auto call = [&](float* to, void* memory, size_t size) {
         return gim_decode_plane(&info, file.data(), file.size(), 0, 1, 0, to, memory, size);
     };

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 
 namespace gim::test {
 
@@ -35,13 +35,12 @@ inline gim_status decode_one(const gim_info& info, const std::vector<uint8_t>& f
     std::vector<float> samples(grid_size * 3), grid_normals(grid_size * 3), grid_texcoords(grid_size * 2);
     std::vector<float> positions(vertex_count * 3), normals(vertex_count * 3), texcoords(vertex_count * 2);
     std::vector<uint32_t> triangles(size_t{l.triangle_count} * 3), grid_triangles(triangles.size());
-    std::vector<std::max_align_t> scratch(l.scratch_size / sizeof(std::max_align_t) + 1);
-    const size_t scratch_size = scratch.size() * sizeof(std::max_align_t);
+    Scratch scratch(l.scratch_size);
     gim_status s = gim_decode_grid(&info, file.data(), file.size(), image, level, samples.data(), grid_normals.data(),
-                                   grid_texcoords.data(), grid_triangles.data(), scratch.data(), scratch_size);
+                                   grid_texcoords.data(), grid_triangles.data(), scratch.data(), scratch.size());
     if (s == GIM_OK)
         s = gim_decode_mesh(&info, file.data(), file.size(), image, level, positions.data(), normals.data(),
-                            texcoords.data(), triangles.data(), scratch.data(), scratch_size);
+                            texcoords.data(), triangles.data(), scratch.data(), scratch.size());
     if (s != GIM_OK) return s;
     out->samples.insert(out->samples.end(), samples.begin(), samples.end());
     out->triangles.insert(out->triangles.end(), triangles.begin(), triangles.end());
@@ -60,7 +59,7 @@ inline gim_status decode_plane(const gim_info& info, const std::vector<uint8_t>&
         if (s != GIM_OK) return s;
         out->prefix = out->prefix > p.prefix_size ? out->prefix : p.prefix_size;
         std::vector<float> values(size_t{p.width} * p.height * 3);
-        std::vector<std::max_align_t> scratch(p.scratch_size / sizeof(std::max_align_t) + 1);
+        Scratch scratch(p.scratch_size);
         s = gim_decode_plane(&info, file.data(), file.size(), image, kind, level, values.data(), scratch.data(),
                              p.scratch_size);
         if (s != GIM_OK) return s;

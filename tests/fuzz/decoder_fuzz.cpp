@@ -7,7 +7,7 @@
 #include "format/bytes.h"
 #include "format/checksum.h"
 #include "format/container.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 
 namespace {
 
@@ -45,9 +45,7 @@ void sign(std::vector<uint8_t>* bytes) {
 }
 
 // Fills memory, so that what is read before it is written shows.
-void spoil(std::vector<std::max_align_t>& memory, int value) {
-    std::memset(memory.data(), value, memory.size() * sizeof(memory[0]));
-}
+void spoil(gim::Scratch& memory, int value) { std::memset(memory.data(), value, memory.size()); }
 bool same(const std::vector<float>& a, const std::vector<float>& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
@@ -57,7 +55,7 @@ void decode(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t im
     if (gim_read_level_info(&info, bytes.data(), bytes.size(), image, level, &l) != GIM_OK) return;
     std::vector<float> x(size_t{l.vertex_count} * 3), n(x.size()), uv(size_t{l.vertex_count} * 2);
     std::vector<uint32_t> t(size_t{l.triangle_count} * 3);
-    std::vector<std::max_align_t> scratch(l.scratch_size / sizeof(std::max_align_t) + 1);
+    gim::Scratch scratch(l.scratch_size);
     spoil(scratch, 0xFF);
     const gim_status status = gim_decode_mesh(&info, bytes.data(), bytes.size(), image, level, x.data(), n.data(),
                                               uv.data(), t.data(), scratch.data(), l.scratch_size);
@@ -99,7 +97,7 @@ void decode_plane(const gim_info& info, const std::vector<uint8_t>& bytes, uint3
     for (uint32_t level = 0; level <= p.coarsest_level; ++level) {
         if (gim_read_plane_info(&info, bytes.data(), bytes.size(), image, kind, level, &p) != GIM_OK) return;
         std::vector<float> values(size_t{p.width} * p.height * 3);
-        std::vector<std::max_align_t> scratch(p.scratch_size / sizeof(std::max_align_t) + 1);
+        gim::Scratch scratch(p.scratch_size);
         if (gim_decode_plane(&info, bytes.data(), bytes.size(), image, kind, level, values.data(), scratch.data(),
                              p.scratch_size) != GIM_OK)
             return;
@@ -127,8 +125,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     }
     uint64_t text_size = 0;
     std::vector<char> text(4096);
-    std::vector<std::max_align_t> scratch(gim_text_scratch_size() / sizeof(std::max_align_t) + 1);
+    gim::Scratch scratch(gim_text_scratch_size());
     (void)gim_read_text(&info, bytes.data(), bytes.size(), text.data(), text.size(), &text_size, scratch.data(),
-                        scratch.size() * sizeof(std::max_align_t));
+                        scratch.size());
     return 0;
 }

@@ -1,5 +1,5 @@
 // gim's own decoder, timed like the others.
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tools/decoded.h"
 #include "tools/rd/rival_codecs.h"
 
@@ -8,7 +8,7 @@ namespace gim::rd {
 namespace {
 
 struct Image {
-    gim_level_info level = {};
+    DecoderLevel level;
     std::vector<float> positions;
     std::vector<uint32_t> triangles;
 };
@@ -18,29 +18,21 @@ class GimDecoder : public RepeatedDecoder {
     explicit GimDecoder(const Bytes& bytes) : bytes_(bytes) {}
 
     bool prepare() {
-        if (gim_read_info(bytes_.data(), bytes_.size(), nullptr, &info_) != GIM_OK) return false;
-        uint64_t scratch = 0;
-        for (uint32_t i = 0; i < info_.image_count; ++i) {
+        if (decoder_.open(bytes_) != GIM_OK) return false;
+        for (uint32_t i = 0; i < decoder_.info().image_count; ++i) {
             Image image;
-            if (gim_read_level_info(&info_, bytes_.data(), bytes_.size(), i, 0, &image.level) != GIM_OK) return false;
+            if (decoder_.read_level(i, 0, &image.level) != GIM_OK) return false;
             image.positions.resize(size_t{3} * image.level.vertex_count);
             image.triangles.resize(size_t{3} * image.level.triangle_count);
-            scratch = std::max(scratch, image.level.scratch_size);
             images_.push_back(std::move(image));
         }
-        scratch_.resize(scratch / sizeof(Block) + 1);
         return true;
     }
 
     bool run() override {
-        gim_info info;  // what every decoder does first
-        if (gim_read_info(bytes_.data(), bytes_.size(), nullptr, &info) != GIM_OK) return false;
-        for (uint32_t i = 0; i < images_.size(); ++i) {
-            Image& image = images_[i];
-            if (gim_decode_mesh(&info, bytes_.data(), bytes_.size(), i, 0, image.positions.data(), nullptr, nullptr,
-                                image.triangles.data(), scratch_.data(), image.level.scratch_size) != GIM_OK) {
-                return false;
-            }
+        if (decoder_.open(bytes_) != GIM_OK) return false;  // what every decoder does first
+        for (Image& image : images_) {
+            if (decoder_.mesh(image.level, {image.positions, {}, {}, image.triangles}) != GIM_OK) return false;
         }
         return true;
     }
@@ -67,13 +59,9 @@ class GimDecoder : public RepeatedDecoder {
     }
 
   private:
-    struct alignas(16) Block {
-        uint8_t bytes[16];
-    };
     const Bytes& bytes_;
-    gim_info info_ = {};
+    Decoder decoder_;
     std::vector<Image> images_;
-    std::vector<Block> scratch_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "format/checksum.h"
 #include "format/container.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tests/decoder/vectors.h"
 #include "tests/format/raw_chart_table.h"
 
@@ -57,8 +57,8 @@ Level decode(const Bytes& file, uint32_t l, uint8_t scratch_value = 0xA5) {
     out.texcoords.resize(vertices * 2);
     out.triangles.resize(size_t{out.level.triangle_count} * 3);
     out.grid_triangles.resize(out.triangles.size());
-    std::vector<std::max_align_t> scratch(out.level.scratch_size / sizeof(std::max_align_t));
-    EXPECT_EQ(scratch.size() * sizeof(std::max_align_t), out.level.scratch_size);
+    Scratch scratch(out.level.scratch_size);
+    EXPECT_EQ(scratch.size(), out.level.scratch_size);
     std::memset(scratch.data(), scratch_value, out.level.scratch_size);
     out.status =
         gim_decode_grid(&out.info, file.data(), file.size(), 0, l, out.grid.data(), out.grid_normals.data(),
@@ -225,8 +225,8 @@ TEST(ReadCharts, CallersMistakesAreTold) {
     const Level f = decode(file, 0);
     ASSERT_EQ(f.status, GIM_OK);
     std::vector<float> x(f.grid.size());
-    std::vector<std::max_align_t> scratch(f.level.scratch_size / sizeof(std::max_align_t) + 1);
-    auto* memory = reinterpret_cast<std::byte*>(scratch.data());
+    Scratch scratch(f.level.scratch_size);
+    auto* memory = static_cast<std::byte*>(scratch.data());
     const uint8_t* b = file.data();
     const size_t n = file.size(), s = f.level.scratch_size;
     for (const bool mesh : {false, true}) {

@@ -8,7 +8,7 @@
 
 #include "encoder/code/assemble_file.h"
 #include "encoder/code/decode_surface.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tests/encoder/charts/made_charts.h"
 
 namespace gim {
@@ -37,14 +37,13 @@ Bytes written(const ChartImages& images, const CodingParameters& parameters) {
 
 // Level 0 as the rectangle.
 std::vector<float> rectangle_of(const Bytes& bytes, gim_info* info) {
-    gim_level_info level;
-    EXPECT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, info), GIM_OK);
-    EXPECT_EQ(gim_read_level_info(info, bytes.data(), bytes.size(), 0, 0, &level), GIM_OK);
+    Decoder decoder;
+    DecoderLevel level;
+    EXPECT_EQ(decoder.open(bytes), GIM_OK);
+    EXPECT_EQ(decoder.read_level(0, 0, &level), GIM_OK);
+    *info = decoder.info();
     std::vector<float> grid(size_t{level.width} * level.height * 3);
-    std::vector<std::max_align_t> scratch(level.scratch_size / sizeof(std::max_align_t) + 1);
-    EXPECT_EQ(
-        gim_decode_positions(info, bytes.data(), bytes.size(), 0, 0, grid.data(), scratch.data(), level.scratch_size),
-        GIM_OK);
+    EXPECT_EQ(decoder.grid(level, {grid, {}, {}, {}}), GIM_OK);
     return grid;
 }
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "encoder/squares/write_squares.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tests/encoder/grid_images.h"
 
 namespace gim {
@@ -42,15 +42,13 @@ Pyramid<float> pyramid_of(const GeometryImage& image, const Header& header) {
 }
 
 std::vector<float> decoded_units(const std::vector<uint8_t>& bytes) {
-    gim_info info;
-    gim_level_info level;
-    EXPECT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
-    EXPECT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, 0, &level), GIM_OK);
+    Decoder decoder;
+    DecoderLevel level;
+    EXPECT_EQ(decoder.open(bytes), GIM_OK);
+    EXPECT_EQ(decoder.read_level(0, 0, &level), GIM_OK);
     std::vector<float> positions(3 * size_t{kSide} * kSide);
-    std::vector<uint8_t> scratch(level.scratch_size);
-    EXPECT_EQ(
-        gim_decode_positions(&info, bytes.data(), bytes.size(), 0, 0, positions.data(), scratch.data(), scratch.size()),
-        GIM_OK);
+    EXPECT_EQ(decoder.grid(level, {positions, {}, {}, {}}), GIM_OK);
+    const gim_info& info = decoder.info();
     for (size_t i = 0; i < positions.size(); ++i)
         positions[i] = static_cast<float>((double{positions[i]} - double{info.origin[i % 3]}) / double{info.step});
     return positions;

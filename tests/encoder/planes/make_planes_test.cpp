@@ -10,7 +10,7 @@
 #include "encoder/planes/input_colors.h"
 #include "encoder/planes/sample_planes.h"
 #include "encoder/surface/clean.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -41,24 +41,18 @@ struct Decoded {
 
 Decoded decode(const std::vector<uint8_t>& file, uint32_t kind) {
     Decoded d;
-    gim_info info;
-    gim_level_info level;
-    gim_plane_info plane;
-    EXPECT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
-    EXPECT_EQ(gim_read_level_info(&info, file.data(), file.size(), 0, 0, &level), GIM_OK);
-    EXPECT_EQ(gim_read_plane_info(&info, file.data(), file.size(), 0, kind, 0, &plane), GIM_OK);
+    Decoder decoder;
+    DecoderLevel level;
+    DecoderPlane plane;
+    EXPECT_EQ(decoder.open(file), GIM_OK);
+    EXPECT_EQ(decoder.read_level(0, 0, &level), GIM_OK);
+    EXPECT_EQ(decoder.read_plane(0, kind, 0, &plane), GIM_OK);
     d.side = level.side;
     d.plane_side = plane.width;
     d.grid.resize(size_t{level.side} * level.side * 3);
     d.values.resize(size_t{plane.width} * plane.height * 3);
-    std::vector<std::max_align_t> scratch(std::max(level.scratch_size, plane.scratch_size) / sizeof(std::max_align_t) +
-                                          1);
-    EXPECT_EQ(
-        gim_decode_positions(&info, file.data(), file.size(), 0, 0, d.grid.data(), scratch.data(), level.scratch_size),
-        GIM_OK);
-    EXPECT_EQ(gim_decode_plane(&info, file.data(), file.size(), 0, kind, 0, d.values.data(), scratch.data(),
-                               plane.scratch_size),
-              GIM_OK);
+    EXPECT_EQ(decoder.grid(level, {d.grid, {}, {}, {}}), GIM_OK);
+    EXPECT_EQ(decoder.plane(plane, d.values), GIM_OK);
     return d;
 }
 

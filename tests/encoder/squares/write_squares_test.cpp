@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "format/seam.h"
-#include "gim/decoder.h"
+#include "gim/decoder.hpp"
 #include "tests/format/random_sideband.h"
 
 namespace gim {
@@ -41,21 +41,21 @@ GeometryImage bumpy(uint32_t side, uint64_t seed, Sideband sideband = {}) {
 
 struct Decoded {
     gim_info info{};
-    gim_level_info level{};
+    DecoderLevel level;
     std::vector<float> positions;
     gim_status status = GIM_BAD_ARGUMENT;
 };
 
 Decoded decode(const std::vector<uint8_t>& bytes, uint32_t image, uint32_t level) {
     Decoded d;
-    d.status = gim_read_info(bytes.data(), bytes.size(), nullptr, &d.info);
+    Decoder decoder;
+    d.status = decoder.open(bytes);
     if (d.status != GIM_OK) return d;
-    d.status = gim_read_level_info(&d.info, bytes.data(), bytes.size(), image, level, &d.level);
+    d.info = decoder.info();
+    d.status = decoder.read_level(image, level, &d.level);
     if (d.status != GIM_OK) return d;
     d.positions.resize(size_t{d.level.side} * d.level.side * 3);
-    std::vector<uint8_t> scratch(d.level.scratch_size);
-    d.status = gim_decode_positions(&d.info, bytes.data(), bytes.size(), image, level, d.positions.data(),
-                                    scratch.data(), scratch.size());
+    d.status = decoder.grid(d.level, {d.positions, {}, {}, {}});
     return d;
 }
 

@@ -1,0 +1,16 @@
+// Closes the seams between charts and makes the corrections fade out into them.  spec/gim-format.md, "Charts".
+// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5.
+#pragma once
+
+#include "decoder/charts/chart_decoder.h"
+
+namespace gim {
+
+// How many layers of samples inside a border get a part of its corrections.
+uint32_t chart_diffusion_width(uint32_t columns, uint32_t rows);
+
+// samples: flat triples. ws.point holds vertex numbers. Where something changes, ws.depth then counts the layers that
+// got a part.
+void close_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, float* samples);
+
+}  // namespace gim

@@ -1,0 +1,17 @@
+// Reads the borders of charts and zips them: tells which samples are one surface point.
+// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5.
+#pragma once
+
+#include "decoder/charts/chart_decoder.h"
+
+namespace gim {
+
+// Reads the borders and zippers of stream_level. Where that is the level that is asked for, also fills ws.depth and
+// makes ws.point a forest over flat samples in which parents come before their children. False: no encoder writes such
+// borders.
+bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, RangeDecoder& decoder);
+
+// Turns the forest into vertex numbers, by first appearance. Returns how many there are.
+uint32_t number_points(const ChartLevelShape& shape, const ChartWorkspace& ws);
+
+}  // namespace gim

@@ -1,0 +1,22 @@
+#include "decoder/level_reader.h"
+
+#include "decoder/charts/read_charts.h"
+#include "decoder/squares/read_squares.h"
+
+namespace gim {
+namespace {
+
+// By FileLayout.
+constexpr LevelReader kReaders[] = {
+    {square_level_info, decode_square_mesh, decode_square_grid, read_square_seams, open_square_plane,
+     lay_out_square_plane, close_square_plane},
+    {chart_level_info, decode_chart_mesh, decode_chart_grid, read_chart_seams, open_chart_plane, lay_out_chart_plane,
+     close_chart_plane},
+};
+static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1);
+
+}  // namespace
+
+const LevelReader& reader_of(FileLayout layout) { return kReaders[static_cast<size_t>(layout)]; }
+
+}  // namespace gim

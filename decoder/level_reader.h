@@ -1,0 +1,67 @@
+// What the decoder asks of a layout: a table of functions for each. Adding a layout adds a folder and a row of the
+// table.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "decoder/plane_level.h"
+#include "format/container.h"
+#include "gim/decoder.h"
+
+namespace gim {
+
+// One level of one image of a file. The image exists; the level may not.
+struct LevelRequest {
+    const Header& header;
+    std::span<const uint8_t> file;
+    const ContainerLimits& limits;
+    uint32_t image = 0, level = 0;
+};
+
+// Memory of the caller.
+struct Memory {
+    void* bytes = nullptr;
+    size_t size = 0;
+};
+
+// Whether scratch is there, aligned, and has `needed` bytes.
+inline Status check_scratch(const Memory& scratch, uint64_t needed) {
+    if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
+    return scratch.size < needed ? Status::kScratchTooSmall : Status::kOk;
+}
+
+// What gim_decode_mesh and gim_decode_grid write.
+struct SurfaceArrays {
+    float* positions = nullptr;
+    float* normals = nullptr;  // may be nullptr, as all below
+    float* texcoords = nullptr;
+    uint32_t* triangles = nullptr;
+};
+
+// Units to object space: `count` triples.
+inline void to_object(const std::array<float, 3> origin, float step, const float* units, float* __restrict positions,
+                      size_t count = 1) {
+    for (size_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
+}
+
+struct LevelReader {
+    Status (*level_info)(const LevelRequest& request, gim_level_info* info);
+    Status (*mesh)(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+    Status (*grid)(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+    // class_of, path_count: as in gim_read_seams.
+    Status (*seams)(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
+
+    // request.level: of the plane that `chunk` at `offset` holds.
+    Status (*open_plane)(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
+    PlaneWorkspace (*lay_out_plane)(const PlaneLevel& plane, Arena* arena);
+    // Makes samples of one surface point equal.
+    void (*close_plane)(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+};
+
+const LevelReader& reader_of(FileLayout layout);
+
+}  // namespace gim

@@ -1,0 +1,17 @@
+// The calls of the C interface for files of squares.
+#pragma once
+
+#include "decoder/level_reader.h"
+
+namespace gim {
+
+Status square_level_info(const LevelRequest& request, gim_level_info* info);
+Status decode_square_mesh(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+Status decode_square_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+Status read_square_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
+
+Status open_square_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
+PlaneWorkspace lay_out_square_plane(const PlaneLevel& plane, Arena* arena);
+void close_square_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+
+}  // namespace gim
