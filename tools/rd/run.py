@@ -67,7 +67,7 @@ def parse_arguments():
     add("--simplified-bits", nargs="+", type=int, default=measure.SIMPLIFIED_BITS, metavar="B",
         help="the same of simplified ones (default 7..14; more are not tried where they gain less than "
              f"{measure.SATURATED_DB} dB)")
-    add("--recorded-rivals", type=Path, default=ROOT.parent / "shared" / "baselines" / "rivals.csv", metavar="CSV",
+    add("--recorded-rivals", type=Path, default=ROOT / "corpus" / "rivals.csv", metavar="CSV",
         help="one more rival: a table with columns model, bytes_at_60dB, ...; left out where there is none")
     add("--redo", nargs="+", choices=MEASURED_TOOLS, default=[], metavar="TOOL",
         help="forget the rows that these tools have for the models, and measure them again")
