@@ -297,6 +297,7 @@ def draw(results, rivals):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="write nothing; exit status 1 if a file is not up to date")
+    parser.add_argument("--no-plot", action="store_true", help="leave the plot as it is")
     arguments = parser.parse_args()
 
     coder = coder_version()
@@ -312,7 +313,8 @@ def main():
         return 1 if stale else 0
     for path, text in wanted.items():
         path.write_text(text, encoding="utf-8")
-    draw(results, rivals)
+    if not arguments.no_plot:
+        draw(results, rivals)
     return 0
 
 
