@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks formatting (clang-format 14) and runs clang-tidy 14 over the tree.
+# Checks formatting (clang-format 14) and the generated tables, and runs clang-tidy 14 over the tree.
 # Usage: bash tools/lint.sh [--format-only | --fix] [FILE...]     --fix reformats; FILEs limit clang-tidy to these sources
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -8,7 +8,7 @@ cd "$GIM_ROOT"
 mode=${1:-}
 case "$mode" in --format-only | --fix) shift ;; *) mode= ;; esac
 
-install_packages clang-format-14
+install_packages clang-format-14 python3
 mapfile -t sources < <(git ls-files '*.h' '*.cpp' '*.c')
 if [ "$mode" = --fix ]; then
     clang-format-14 -i "${sources[@]}"
@@ -16,6 +16,8 @@ if [ "$mode" = --fix ]; then
 fi
 say "clang-format over ${#sources[@]} files"
 clang-format-14 --dry-run -Werror "${sources[@]}" || die "run: bash tools/lint.sh --fix"
+say "Generated tables"
+python3 tools/results.py --check || die "run: python3 tools/results.py"
 [ "$mode" = --format-only ] && exit 0
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" clang-tidy-14

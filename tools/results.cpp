@@ -1,12 +1,16 @@
-// gim_results: writes corpus/results.csv, the record of what the encoder reaches (CONTRIBUTING.md, "Results").
-// Models that this machine does not have keep the rows that the file already holds.
+// gim_results: measures the encoder and writes corpus/results.csv (CONTRIBUTING.md, "Results").
+// The file is written again after each measured row. Rows that are not measured stay as they are.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <sstream>
+#include <utility>
 
 #include "corpus/corpus.h"
 #include "gim/decoder.hpp"
@@ -18,9 +22,10 @@ namespace gim {
 namespace {
 
 constexpr const char* kHeader =
-    "model,setting,width,height,charts,packing,vertices,bytes,psnr_db,rms_to_test,rms_to_reference,hausdorff,"
-    "stretch_efficiency,folds_sampled,folds,levels,decode_ms,encode_s";
+    "model,setting,coder,width,height,charts,packing,vertices,bytes,psnr_db,rms_to_test,rms_to_reference,hausdorff,"
+    "stretch_efficiency,folds_sampled,folds,levels,decode_ms,encode_cpu_s";
 constexpr const char* kPackagedBunny = "/usr/share/glmark2/models/bunny.obj";
+constexpr uint32_t kDefaultSide = 257;
 
 // In the order of the file. Generated models first: every machine has them.
 constexpr std::array kGenerated = {"sphere-rough-10800", "box-19200",   "limbs-rough",
@@ -31,20 +36,31 @@ constexpr std::array kScanned = {
     "hand",         "david",          "rocker-arm", "fandisk", "block",      "eight",   "cow",
     "three-torus",  "flange-genus13", "bunny",      "mask",    "mask-holes", "laurana", "terrain-sthelens",
     "teapot",       "bones"};
+constexpr std::array kAgainstRivals = {"bunny", "horse",  "feline",   "venus", "igea",
+                                       "hand",  "dragon", "gargoyle", "david", "rocker-arm"};
+constexpr std::array kOfThePaper = {"horse", "dragon", "feline", "gargoyle"};
 
 struct Setting {
     const char* name;
+    std::span<const char* const> models;  // measured unless --only names others; empty: all
     RateTarget rate;
-    uint32_t bits;
+    uint32_t bits = 12;
     Layout layout = Layout::kGim;
+    bool any_side = false;  // as the program without --size: the encoder may choose a smaller side
 };
 constexpr uint32_t kChartSamples = 65536;  // as in the paper's tables
-constexpr std::array<Setting, 5> kSettings = {
-    {{"quality-75", {RateTarget::Kind::kQuality, 75}, 12},
-     {"psnr-70", {RateTarget::Kind::kPsnr, 70}, 12},
-     {"lossless-16", {RateTarget::Kind::kLossless, 0}, 16},
-     {"mcgim-lossless-16", {RateTarget::Kind::kLossless, 0}, 16, Layout::kMcgim},
-     {"mcgim-2-bits-a-sample", {RateTarget::Kind::kBytes, kChartSamples * 2.0 / 8}, 12, Layout::kMcgim}}};
+constexpr RateTarget kLossless = {RateTarget::Kind::kLossless, 0};
+constexpr RateTarget psnr_target(double value) { return {RateTarget::Kind::kPsnr, value}; }
+constexpr std::array<Setting, 9> kSettings = {
+    {{"quality-75", {}, {RateTarget::Kind::kQuality, 75}},
+     {"psnr-70", {}, psnr_target(70)},
+     {"file-60-db", kAgainstRivals, psnr_target(60), 12, Layout::kGim, true},
+     {"file-65-db", kAgainstRivals, psnr_target(65), 12, Layout::kGim, true},
+     {"file-70-db", kAgainstRivals, psnr_target(70), 12, Layout::kGim, true},
+     {"file-75-db", kAgainstRivals, psnr_target(75), 12, Layout::kGim, true},
+     {"lossless-16", {}, kLossless, 16},
+     {"mcgim-lossless-16", kScanned, kLossless, 16, Layout::kMcgim},
+     {"mcgim-2-bits-a-sample", kOfThePaper, {RateTarget::Kind::kBytes, kChartSamples * 2.0 / 8}, 12, Layout::kMcgim}}};
 
 std::optional<TriangleMesh> scanned_mesh(const std::string& name, const std::string& folder) {
     Result<TriangleMesh> mesh = read_surface(folder + "/" + name + ".ply", 0);
@@ -53,8 +69,8 @@ std::optional<TriangleMesh> scanned_mesh(const std::string& name, const std::str
     return std::move(mesh.value());
 }
 
-// Level 0 of all images as meshes with normals: best of several, so that other work on the machine counts little. One thread,
-// warm memory. Negative: it does not decode.
+// Time to decode level 0 of all images to meshes with normals, on one thread with warm memory. The best of several runs
+// counts, because other programs may use the machine too. Negative where the file does not decode.
 double decode_milliseconds(const Bytes& file) {
     constexpr int kRuns = 20;
     Decoder decoder;
@@ -78,80 +94,138 @@ double decode_milliseconds(const Bytes& file) {
     return sum;
 }
 
-std::string row(const std::string& model, const Setting& setting, const TriangleMesh& mesh, uint32_t side) {
+std::string measured_row(const std::string& model, const Setting& setting, const TriangleMesh& mesh, uint32_t side) {
     EncodeOptions options;
     options.side = side;
+    options.try_smaller_sides = setting.any_side;
     options.bits = setting.bits;
     options.layout = setting.layout;
     options.samples = kChartSamples;
     options.rate = setting.rate;
-    options.color_side = 0;  // the surface alone
+    options.color_side = 0;                   // the surface alone
+    const std::clock_t begin = std::clock();  // processor time of all threads
     const Result<Encoded> encoded = encode(mesh, options);
+    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     char line[400];
     if (!encoded.ok()) {
         const std::string stage(stage_name(encoded.error().stage));
-        std::snprintf(line, sizeof(line), "%s,%s,,,,,%zu,failed: %s,,,,,,,,,,", model.c_str(), setting.name,
-                      mesh.positions.size(), stage.c_str());
+        std::snprintf(line, sizeof(line), "%s,%s,%u,,,,,%zu,failed: %s,,,,,,,,,,", model.c_str(), setting.name,
+                      kCoderVersion, mesh.positions.size(), stage.c_str());
         return line;
     }
     const EncodeReport& r = encoded.value().report;
-    std::snprintf(line, sizeof(line), "%s,%s,%u,%u,%u,%.3f,%llu,%llu,%.2f,%.4g,%.4g,%.4g,%.4f,%llu,%llu,%zu,%.2f,%.1f",
-                  model.c_str(), setting.name, r.width, r.height, r.charts, r.charts > 0 ? r.packing_efficiency : 1.0,
+    std::snprintf(line, sizeof(line),
+                  "%s,%s,%u,%u,%u,%u,%.3f,%llu,%llu,%.2f,%.4g,%.4g,%.4g,%.4f,%llu,%llu,%zu,%.2f,%.1f", model.c_str(),
+                  setting.name, kCoderVersion, r.width, r.height, r.charts, r.charts > 0 ? r.packing_efficiency : 1.0,
                   static_cast<unsigned long long>(r.input_vertices), static_cast<unsigned long long>(r.file_bytes),
                   r.error.psnr, r.error.rms_to_test, r.error.rms_to_reference, r.error.hausdorff, r.stretch_efficiency,
                   static_cast<unsigned long long>(r.folds_before_fit), static_cast<unsigned long long>(r.folds),
-                  r.levels.size(), decode_milliseconds(encoded.value().bytes), r.seconds);
+                  r.levels.size(), decode_milliseconds(encoded.value().bytes), seconds);
     return line;
 }
 
-std::vector<std::string> old_rows(const std::string& path, const std::string& model) {
-    std::vector<std::string> rows;
-    const Result<Bytes> old = read_file(path);
-    if (!old.ok()) return rows;
-    std::istringstream lines(std::string(old.value().begin(), old.value().end()));
-    for (std::string line; std::getline(lines, line);) {
-        if (line.starts_with(model + ",")) rows.push_back(line);
-    }
-    return rows;
+bool is_among(std::span<const char* const> names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_wanted(const std::vector<std::string>& only, const std::string& name) {
-    return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-}
+// The rows of the CSV file, by model and setting.
+class Table {
+  public:
+    explicit Table(std::string path) : path_(std::move(path)) {}
+
+    // A missing file is an empty table.
+    Result<bool> read() {
+        const Result<Bytes> old = read_file(path_);
+        if (!old.ok()) return true;
+        std::istringstream lines(std::string(old.value().begin(), old.value().end()));
+        std::string line;
+        std::getline(lines, line);
+        if (line != kHeader) return Error{Stage::kInput, "has other columns than this program writes"};
+        while (std::getline(lines, line)) {
+            const size_t after_model = line.find(',');
+            rows_[line.substr(0, line.find(',', after_model + 1))] = line;
+        }
+        return true;
+    }
+
+    Result<bool> set(const std::string& model, const Setting& setting, const std::string& row) {
+        rows_[model + "," + setting.name] = row;
+        return write();
+    }
+
+  private:
+    // Models in the order above; rows of other models and settings are dropped.
+    Result<bool> write() const {
+        std::string text = std::string(kHeader) + "\n";
+        const auto append = [&](std::span<const char* const> models) {
+            for (const std::string model : models) {
+                for (const Setting& setting : kSettings) {
+                    const auto row = rows_.find(model + "," + setting.name);
+                    if (row != rows_.end()) text += row->second + "\n";
+                }
+            }
+        };
+        append(kGenerated);
+        append(kScanned);
+        return write_file(path_, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    }
+
+    std::string path_;
+    std::map<std::string, std::string> rows_;
+};
 
 struct Wanted {
     std::vector<std::string> models, settings;  // empty: all
+    uint32_t side = kDefaultSide;
 };
 
-int run(const std::string& path, const std::string& models, const Wanted& wanted, uint32_t side) {
-    std::string text = std::string(kHeader) + "\n";
-    const auto add_model = [&](const std::string& name, const std::optional<TriangleMesh>& mesh) {
-        const bool is_model_wanted = is_wanted(wanted.models, name);
-        if (!mesh || !is_model_wanted) {
-            std::fprintf(stderr, "%-20s %s\n", name.c_str(),
-                         is_model_wanted ? "not here, its old rows stay" : "left as it is");
-            for (const std::string& line : old_rows(path, name)) text += line + "\n";
-            return;
-        }
-        for (const Setting& setting : kSettings) {
-            if (!is_wanted(wanted.settings, setting.name)) {
-                for (const std::string& line : old_rows(path, name + "," + setting.name)) text += line + "\n";
-                continue;
-            }
-            const std::string line = row(name, setting, *mesh, side);
-            std::fprintf(stderr, "%s\n", line.c_str());
-            text += line + "\n";
-        }
+bool is_wanted(const Wanted& wanted, const std::string& model, const Setting& setting) {
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
     };
-    for (const char* name : kGenerated) add_model(name, corpus::corpus().named(name).mesh());
-    for (const char* name : kScanned) add_model(name, scanned_mesh(name, models));
+    if (!wanted.settings.empty() && !has(wanted.settings, setting.name)) return false;
+    if (!wanted.models.empty()) return has(wanted.models, model);
+    return setting.models.empty() || is_among(setting.models, model);
+}
 
-    const Result<bool> written = write_file(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-    if (!written.ok()) {
-        std::fprintf(stderr, "gim_results: %s: %s\n", path.c_str(), written.error().message.c_str());
-        return 1;
+// One model after the other, so that a mesh is read once.
+Result<bool> measure(Table& table, const Wanted& wanted, const std::string& folder) {
+    const auto measure_model = [&](const std::string& name, bool is_scanned) -> Result<bool> {
+        std::vector<const Setting*> settings;
+        for (const Setting& setting : kSettings) {
+            if (is_wanted(wanted, name, setting)) settings.push_back(&setting);
+        }
+        if (settings.empty()) return true;
+        const std::optional<TriangleMesh> mesh =
+            is_scanned ? scanned_mesh(name, folder) : corpus::corpus().named(name).mesh();
+        if (!mesh) std::fprintf(stderr, "%s: not on this machine, its rows stay\n", name.c_str());
+        for (const Setting* setting : settings) {
+            if (!mesh) break;
+            const std::string row = measured_row(name, *setting, *mesh, wanted.side);
+            std::fprintf(stderr, "%s\n", row.c_str());
+            const Result<bool> written = table.set(name, *setting, row);
+            if (!written.ok()) return written.error();
+        }
+        return true;
+    };
+    for (const char* name : kGenerated) {
+        const Result<bool> measured = measure_model(name, false);
+        if (!measured.ok()) return measured.error();
     }
-    return 0;
+    for (const char* name : kScanned) {
+        const Result<bool> measured = measure_model(name, true);
+        if (!measured.ok()) return measured.error();
+    }
+    return true;
+}
+
+int run(const std::string& path, const std::string& folder, const Wanted& wanted) {
+    Table table(path);
+    Result<bool> done = table.read();
+    if (done.ok()) done = measure(table, wanted, folder);
+    if (done.ok()) return 0;
+    std::fprintf(stderr, "gim_results: %s: %s\n", path.c_str(), done.error().message.c_str());
+    return 1;
 }
 
 }  // namespace
@@ -161,14 +235,14 @@ int main(int argc, char** argv) {
     std::string path;
     std::string models = GIM_MODELS_DIR;
     gim::Wanted wanted;
-    uint32_t side = 257;
-    CLI::App app("gim_results: encodes the corpus and writes the record of bytes, error and time.");
-    app.footer("decode_ms and encode_s depend on the machine; everything else must not.");
+    CLI::App app("gim_results: encodes the corpus and records bytes, error and time.");
+    app.footer("decode_ms and encode_cpu_s depend on the machine. All other columns must not.");
     app.add_option("CSV", path, "File to write, usually corpus/results.csv")->required();
     app.add_option("--models", models, "Folder of the development models (PLY)")->capture_default_str();
     app.add_option("--only", wanted.models, "Measure these models, keep the other rows");
     app.add_option("--settings", wanted.settings, "Measure only these settings, keep the other rows");
-    app.add_option("--size", side, "Samples per side")->capture_default_str();
+    app.add_option("--size", wanted.side, "Samples per side, the most where the encoder chooses")
+        ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    return gim::run(path, models, wanted, side);
+    return gim::run(path, models, wanted);
 }

@@ -52,7 +52,7 @@ class Curves(unittest.TestCase):
     def test_recorded_rivals_are_read_and_empty_cells_left_out(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "rivals.csv"
-            path.write_text("model,bytes_at_60dB,bytes_at_65dB\nball,,900\n", encoding="utf-8")
+            path.write_text("# how it was measured\nmodel,bytes_at_60dB,bytes_at_65dB\nball,,900\n", encoding="utf-8")
             self.assertEqual(curves.read_recorded_rivals(path), {"ball": [(900.0, 65.0)]})
             self.assertEqual(curves.read_recorded_rivals(Path(folder) / "none.csv"), {})
 

@@ -105,12 +105,12 @@ def curve_rows(rows):
 
 
 def read_recorded_rivals(path):
-    """{model: [(bytes, dB)]} of a table with columns model, bytes_at_60dB, ..."""
+    """{model: [(bytes, dB)]} of a table with columns model, bytes_at_60dB, ... Lines that begin with # are comments."""
     curves = {}
     if not Path(path).is_file():
         return curves
     with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
+        for row in csv.DictReader(line for line in file if not line.startswith("#")):
             cells = ((key, row[key]) for key in row if key and key.startswith("bytes_at_") and row[key])
             curves[row["model"]] = [(float(n), float(key[len("bytes_at_"):-len("dB")])) for key, n in cells]
     return curves

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Rate-distortion curves of gim and of what people use instead.
 
-Each model is coded by gim (one square, charts), by Draco and meshoptimizer + zstd as it is, and by both after simplification
-(meshopt_simplify; Lindstrom-Turk, where CGAL is installed), at many settings; each result is decoded and measured by
-`gim compare` against the model: symmetric PSNR, RMS both ways, Hausdorff distance, normals. Decoders are timed in memory, on
-one thread, in turns. In the folder --out:
+Each model is coded by gim (one square, charts), and by Draco and meshoptimizer + zstd, both as it is and after simplification
+(meshopt_simplify, or Lindstrom-Turk where CGAL is installed). Each program runs at many settings. `gim compare` measures each
+decoded result against the model: symmetric PSNR, RMS distance both ways, Hausdorff distance, and the mean angle between shading
+normals. Samples are uniform by area, on both surfaces, and each is compared with the nearest point of the other surface. The
+decoders are timed in memory, on one thread, in turns. The folder --out receives:
 
   results.csv      one row per model, tool and setting; a later run keeps the rows and measures what is missing
   MODEL-psnr.png   PSNR over bytes;  MODEL-decode.png decode time over PSNR;  MODEL-normals.png normal error over bytes
@@ -17,7 +18,8 @@ Programs (once, in the root of the repository, on Debian 12):
   apt-get install libdraco-dev libmeshoptimizer-dev libcgal-dev python3-matplotlib
   cmake --preset release -DGIM_BUILD_RD=ON && cmake --build --preset release
 
-What is missing is left out with a note. Example:
+The run leaves out what is missing, with a note. The rivals are programs for evaluation: they are never installed and never linked to
+gim. gim_lindstrom_turk is the only one that includes GPL headers (CGAL's). Example:
 
   python3 tools/rd/run.py --models bunny.ply horse.ply --out out/rd
 """
@@ -67,7 +69,7 @@ def parse_arguments():
     add("--simplified-bits", nargs="+", type=int, default=measure.SIMPLIFIED_BITS, metavar="B",
         help="the same of simplified ones (default 7..14; more are not tried where they gain less than "
              f"{measure.SATURATED_DB} dB)")
-    add("--recorded-rivals", type=Path, default=ROOT.parent / "shared" / "baselines" / "rivals.csv", metavar="CSV",
+    add("--recorded-rivals", type=Path, default=ROOT / "corpus" / "rivals.csv", metavar="CSV",
         help="one more rival: a table with columns model, bytes_at_60dB, ...; left out where there is none")
     add("--redo", nargs="+", choices=MEASURED_TOOLS, default=[], metavar="TOOL",
         help="forget the rows that these tools have for the models, and measure them again")

@@ -1,0 +1,322 @@
+#!/usr/bin/env python3
+"""Writes the tables and the plot of what gim reaches, from corpus/results.csv and corpus/rivals.csv.
+
+  python3 tools/results.py           corpus/RESULTS.md, the table of sizes in README.md, spec/rate-distortion.png
+  python3 tools/results.py --check   fails if RESULTS.md or README.md are not what the command above would write
+
+The plot needs matplotlib. Without it the old plot stays, and a note says so.
+"""
+
+import argparse
+import csv
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS_CSV = ROOT / "corpus" / "results.csv"
+RIVALS_CSV = ROOT / "corpus" / "rivals.csv"
+RESULTS_MD = ROOT / "corpus" / "RESULTS.md"
+README = ROOT / "README.md"
+PLOT = ROOT / "spec" / "rate-distortion.png"
+ENCODER_H = ROOT / "encoder" / "include" / "gim" / "encoder.h"
+
+BEGIN, END = "<!-- sizes:begin -->", "<!-- sizes:end -->"
+TARGETS_DB = (60, 65, 70, 75)
+COMPARED = ("bunny", "horse", "feline", "venus", "igea", "hand", "dragon", "gargoyle", "david", "rocker-arm")
+OLD = "†"
+PAPER_PSNR = {"horse": 84.6, "feline": 79.5, "dragon": 77.9, "gargoyle": 83.8}  # charts of Sander et al. 2003
+
+
+def coder_version():
+    found = re.search(r"kCoderVersion = (\d+);", ENCODER_H.read_text(encoding="utf-8"))
+    if not found:
+        sys.exit(f"error: {ENCODER_H} has no kCoderVersion")
+    return int(found.group(1))
+
+
+class Row:
+    """One row of results.csv. Values that were not measured are None."""
+
+    def __init__(self, cells, coder):
+        self.cells = cells
+        self.is_old = int(cells["coder"]) < coder
+        self.failure = cells["bytes"] if cells["bytes"].startswith("failed") else None
+
+    def number(self, column):
+        text = self.cells[column]
+        return float(text) if text and not self.failure else None
+
+    def text(self, column, form=",.0f", unit=""):
+        value = self.number(column)
+        return "-" if value is None else format(value, form) + unit
+
+    def bytes(self):
+        """Bytes with the mark of an older coder."""
+        return self.failure or self.text("bytes") + (f" {OLD}" if self.is_old else "")
+
+
+def read_table(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def read_results(coder):
+    """{(model, setting): Row} in the order of the file."""
+    return {(cells["model"], cells["setting"]): Row(cells, coder) for cells in read_table(RESULTS_CSV)}
+
+
+def read_rivals():
+    """{model: {dB: bytes}}"""
+    rivals = {}
+    for cells in read_table(RIVALS_CSV):
+        sizes = {db: cells[f"bytes_at_{db}dB"] for db in TARGETS_DB}
+        rivals[cells["model"]] = {db: float(size) for db, size in sizes.items() if size}
+    return rivals
+
+
+def markdown(head, lines):
+    out = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return "\n".join(out + ["| " + " | ".join(line) + " |" for line in lines])
+
+
+def of_setting(results, setting):
+    return [row for (_, name), row in results.items() if name == setting]
+
+
+# ---- the table against rivals ----------------------------------------------------------------------------------------
+
+def size_cell(row, rival):
+    """Bytes of gim, bytes of the rival, quotient."""
+    if row is None or row.failure:
+        return "-"
+    if rival is None:
+        return row.bytes()
+    return f"{row.bytes()} / {rival:,.0f} = {row.number('bytes') / rival:.2f}"
+
+
+def size_lines(results, rivals, models):
+    lines = []
+    for model in models:
+        found = [results.get((model, f"file-{db}-db")) for db in TARGETS_DB]
+        if any(found):
+            sizes = rivals.get(model, {})
+            lines.append([model] + [size_cell(row, sizes.get(db)) for row, db in zip(found, TARGETS_DB)])
+    return lines
+
+
+def size_table(results, rivals, models):
+    lines = size_lines(results, rivals, models)
+    note = f"\n\n{OLD} An older coder made this file. It was not measured again." if OLD in str(lines) else ""
+    return markdown(["model"] + [f"{db} dB" for db in TARGETS_DB], lines) + note
+
+
+def with_size_table(text, table):
+    begin, end = text.find(BEGIN), text.find(END)
+    if begin < 0 or end < begin:
+        sys.exit(f"error: {README} lacks the markers {BEGIN} and {END}")
+    return text[:begin + len(BEGIN)] + "\n" + table + "\n" + text[end:]
+
+
+# ---- RESULTS.md ------------------------------------------------------------------------------------------------------
+
+def intro(coder, results):
+    old = sum(row.is_old for row in results.values())
+    stale = (f"An older coder made {old} of {len(results)} rows. They are marked {OLD}.\n"
+             "Their bytes and distances are not what the program gives today." if old else "This coder made all rows.")
+    return f"""# Results
+
+`tools/results.py` writes this page from [`results.csv`](results.csv) and [`rivals.csv`](rivals.csv). Do not edit it.
+`gim_results` writes `results.csv`. `CONTRIBUTING.md` says how.
+
+The coder has version {coder}. {stale}
+
+How the figures were measured:
+
+- One run for each row: Release build, GCC 12, two cores. Positions and connectivity only, no colours and no normal map.
+- PSNR is 20 log10(bounding-box diagonal / RMS distance) of the decoded surface against the input mesh. The RMS distance is weighted
+  by area. It is taken both ways and the larger one counts. `gim compare` prints the same figure.
+- Folds are triangles of the decoded surface that look away from the input.
+- Bytes, distances and folds do not depend on the machine. Times do.
+- Decoding time is the best of 20 runs of `gim_decode_mesh` with normals, on one thread, at full resolution.
+- Encoding time is processor time of all threads, in seconds.
+- The machine was shared with other programs while it measured. Times are upper bounds.
+- "-" means not measured.
+"""
+
+
+def rival_section(results, rivals):
+    others = [model for model in rivals if model not in COMPARED and (model, "file-70-db") in results]
+    text = f"""## Whole files against the best rival
+
+`gim encode MESH OUT --psnr DB`, with `DB` as in the head of the column. The encoder may choose a grid smaller than 257 x 257.
+Each cell is: bytes of gim / bytes of the rival = quotient. The head of `rivals.csv` says how the rival was measured.
+
+{size_table(results, rivals, COMPARED)}
+"""
+    if others:
+        text += f"""
+Machined parts and other models that are small or smooth:
+
+{size_table(results, rivals, others)}
+"""
+    lines = []
+    for model in [*COMPARED, *others]:
+        for db in TARGETS_DB:
+            row = results.get((model, f"file-{db}-db"))
+            if row and row.number("psnr_db") is not None:
+                lines.append([model, f"{db} dB", row.bytes(), row.text("psnr_db", ".2f", " dB"), row.text("width", ".0f"),
+                              row.text("decode_ms", ".2f", " ms"), row.text("encode_cpu_s", ".0f", " s")])
+    if lines:
+        text += f"""
+The same files in detail. "Side" is the number of samples a side that the encoder chose.
+
+{markdown(["model", "target", "bytes", "PSNR", "side", "decoding", "encoding"], lines)}
+"""
+    return text
+
+
+def lossy_section(results):
+    lines = []
+    for row in of_setting(results, "quality-75"):
+        other = results.get((row.cells["model"], "psnr-70"))
+        line = [row.cells["model"]]
+        for r in (row, other):
+            line += [r.bytes(), r.text("psnr_db", ".2f", " dB"), r.text("folds"), r.text("decode_ms", ".2f", " ms"),
+                     r.text("encode_cpu_s", ".0f", " s")] if r else ["-"] * 5
+        lines.append(line)
+    head = ["bytes", "PSNR", "folds", "decoding", "encoding"]
+    return f"""## One square, lossy
+
+`--size 257 --quality 75` (left) and `--size 257 --psnr 70` (right).
+
+{markdown(["model"] + [f"Q 75: {h}" for h in head] + [f"70 dB: {h}" for h in head], lines)}
+"""
+
+
+def levels_down_to(row):
+    side, levels = row.number("width"), row.number("levels")
+    return "-" if side is None else f"{int((side - 1) / 2 ** (levels - 1)) + 1}"
+
+
+def lossless_section(results):
+    lines = [[row.cells["model"], row.bytes(), row.text("psnr_db", ".2f", " dB"), row.text("folds"),
+              row.text("stretch_efficiency", ".3f"), levels_down_to(row), row.text("decode_ms", ".2f", " ms"),
+              row.text("encode_cpu_s", ".0f", " s")] for row in of_setting(results, "lossless-16")]
+    head = ["model", "bytes", "PSNR", "folds", "stretch efficiency", "coarsest side", "decoding", "encoding"]
+    return f"""## One square, lossless
+
+`--size 257 --lossless --bits 16`. "Lossless" means that the decoded image equals the 16-bit image. PSNR tells how near the image is
+to the mesh. The coarsest side is that of the last level that closes.
+
+{markdown(head, lines)}
+"""
+
+
+def chart_section(results):
+    lines = []
+    for row in of_setting(results, "mcgim-lossless-16"):
+        model = row.cells["model"]
+        square = results.get((model, "lossless-16"))
+        lines.append([model, row.text("charts"), f"{row.text('width')} x {row.text('height')}",
+                      row.text("packing", ".1%"), row.text("stretch_efficiency", ".3f"), row.bytes(),
+                      row.text("psnr_db", ".2f", " dB"), square.text("psnr_db", ".2f", " dB") if square else "-",
+                      f"{PAPER_PSNR[model]} dB" if model in PAPER_PSNR else "-", row.text("levels"),
+                      row.text("decode_ms", ".2f", " ms"), row.text("encode_cpu_s", ".0f", " s")])
+    paper = []
+    for row in of_setting(results, "mcgim-2-bits-a-sample"):
+        model = row.cells["model"]
+        paper.append([model, row.text("charts"), row.bytes(), row.text("psnr_db", ".2f", " dB"),
+                      row.text("encode_cpu_s", ".0f", " s")])
+    head = ["model", "charts", "rectangle", "defined", "stretch efficiency", "bytes", "PSNR", "PSNR of one square",
+            "PSNR in the paper", "levels", "decoding", "encoding"]
+    return f"""## Charts
+
+`--layout mcgim --lossless --bits 16 --samples 65536`. The encoder chooses the number of charts. "Defined" is the part of the rectangle
+that the charts cover. The paper is Sander et al. 2003; its charts cover 73 to 76 % of the rectangle. The encoder
+checks that each level has the components, boundary loops and genus of the mesh.
+
+{markdown(head, lines)}
+
+`--layout mcgim --bytes 16384 --samples 65536`, which is 2 bits for each sample of the rectangle:
+
+{markdown(["model", "charts", "bytes", "PSNR", "encoding"], paper)}
+"""
+
+
+def results_page(coder, results, rivals):
+    return "\n".join([intro(coder, results), rival_section(results, rivals), lossy_section(results),
+                      lossless_section(results), chart_section(results)])
+
+
+# ---- the plot --------------------------------------------------------------------------------------------------------
+
+def draw(results, rivals):
+    try:
+        import matplotlib
+    except ImportError:
+        print(f"note: no matplotlib, {PLOT.name} stays as it is", file=sys.stderr)
+        return
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import FuncFormatter, LogLocator
+
+    figure, grid = plt.subplots(2, 5, figsize=(15, 6), sharex=True)
+    for axes, model in zip(grid.flat, COMPARED):
+        rival = sorted(rivals.get(model, {}).items())
+        axes.plot([db for db, _ in rival], [size for _, size in rival], color="#E69F00", marker="s", markersize=4,
+                  label="best rival (bytes at this PSNR)")
+        found = [(db, results.get((model, f"file-{db}-db"))) for db in TARGETS_DB]
+        found = [(row.number("psnr_db") or db, row) for db, row in found if row and row.number("bytes") is not None]
+        points = [(x, row.number("bytes"), row.is_old) for x, row in found]
+        axes.plot([p[0] for p in points], [p[1] for p in points], color="black", marker="o", markersize=5,
+                  label="gim (bytes of the file)")
+        old = [p for p in points if p[2]]
+        if old:
+            axes.plot([p[0] for p in old], [p[1] for p in old], linestyle="none", marker="o", markersize=5, color="black",
+                      markerfacecolor="white", label="gim, older coder")
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n / 1000:g}k" if n >= 1000 else f"{n:g}"))
+        axes.yaxis.set_minor_formatter(FuncFormatter(lambda *_: ""))
+        axes.set_xticks(TARGETS_DB)
+        axes.set_title(model, fontsize=10)
+        axes.grid(True, which="major", linewidth=0.3)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("bytes of the file")
+    for axes in grid[1]:
+        axes.set_xlabel("PSNR, dB")
+    labels = {}
+    for axes in grid.flat:
+        labels.update(dict(zip(*reversed(axes.get_legend_handles_labels()))))
+    figure.tight_layout()
+    figure.legend(labels.values(), labels.keys(), loc="upper center", ncol=3, bbox_to_anchor=(0.5, 0.0), frameon=False)
+    figure.savefig(PLOT, dpi=90, bbox_inches="tight", metadata={"Software": None})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="write nothing; exit status 1 if a file is not up to date")
+    parser.add_argument("--no-plot", action="store_true", help="leave the plot as it is")
+    arguments = parser.parse_args()
+
+    coder = coder_version()
+    results, rivals = read_results(coder), read_rivals()
+    readme = README.read_text(encoding="utf-8")
+    wanted = {RESULTS_MD: results_page(coder, results, rivals),
+              README: with_size_table(readme, size_table(results, rivals, COMPARED))}
+    if arguments.check:
+        stale = [path.relative_to(ROOT) for path, text in wanted.items()
+                 if not path.is_file() or path.read_text(encoding="utf-8") != text]
+        for path in stale:
+            print(f"{path} is not up to date; run: python3 tools/results.py", file=sys.stderr)
+        return 1 if stale else 0
+    for path, text in wanted.items():
+        path.write_text(text, encoding="utf-8")
+    if not arguments.no_plot:
+        draw(results, rivals)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
