@@ -115,23 +115,6 @@ TEST(DetailBasis, NormsAreThoseOfTheSynthesisFunctions) {
     }
 }
 
-// A detail that two mates share moves the samples on both sides of the cut.
-TEST(DetailBasis, NormsOfSharedDetailsAreThoseOfTheSynthesisFunctionsToo) {
-    const std::vector<float> image = torus_units();
-    const SeamTable seams = torus_seams();
-    const DetailBasis basis(image, kSide, kCoding, &seams);
-    // The finest horizontal band has 33 rows of 32; the details of its first row are those of the last one.
-    const size_t first = basis.size() - 3 * (32 * 32 + 32 * 33 + 33 * 32), last = first + 3 * (32 * 32);
-    for (size_t column = 4; column < 28; column += 5) {
-        const size_t i = (basis.is_copy(first + 3 * column) ? last : first) + 3 * column;
-        ASSERT_FALSE(basis.is_copy(i));
-        std::vector<float> c(basis.size());
-        c[i] = 1;
-        const std::vector<float> function = basis.synthesize(c);
-        EXPECT_NEAR(std::sqrt(dot(function, function)) / basis.norm(i), 1, 0.15);
-    }
-}
-
 TEST(DetailBasis, StepsFollowBandComponentAndArea) {
     const std::vector<float> image = torus_units();
     const DetailBasis basis(image, kSide, kCoding), without_area(image, kSide, {8, true, 3, 0});
