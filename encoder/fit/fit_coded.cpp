@@ -21,6 +21,7 @@
 #include "encoder/code/code_bands.h"
 #include "encoder/fit/detail_basis.h"
 #include "encoder/fit/fitter.h"
+#include "encoder/fit/prices.h"
 #include "encoder/surface/surface_samples.h"
 #include "format/fuse.h"
 #include "format/ring.h"
@@ -57,12 +58,7 @@ Schedule schedule_of(CodedFit::Effort effort) {
     return {3, kLast};
 }
 
-constexpr double kDensity = 1.5;         // samples of the reference per face
-constexpr double kBits = 1;              // these two were measured on bunny, horse and feline (spec/rationale.md)
-constexpr double kNarrow = 0.3;          // of a step
-constexpr float kPullsPerSample = 2;     // both surfaces are sampled
-constexpr float kTangentialPull = 0.1f;  // how much distances hold samples along the surface; for preconditioning only
-constexpr float kLeastArea = 0.05f;      // likewise
+constexpr double kDensity = 1.5;  // samples of the reference per face
 constexpr int kMostSteps = 40;
 constexpr double kTolerance = 1e-4;
 
@@ -133,28 +129,6 @@ class CoordinateSystem {
     const DetailBasis& basis_;
     const GridGluing& gluing_;
     Planes in_, out_;
-};
-
-enum class Free { kAll, kNormals };
-
-// What each coordinate costs, and what it is about scaled by: price + curvature of the distances, inverted; 0 where held.
-struct Prices {
-    std::vector<float> price, inverse;
-
-    Prices(const DetailBasis& basis, const Coordinates& c, float quantizer, Free free)
-        : price(c.size()), inverse(c.size()) {
-        const auto ln2 = static_cast<float>(std::log(2.0));
-        const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;
-        for_all(c.size(), [&](size_t i) {
-            if ((free == Free::kNormals && DetailBasis::is_tangential(i)) || basis.is_copy(i)) return;
-            const float narrow = static_cast<float>(kNarrow) * basis.step(i);
-            if (i >= DetailBasis::kBase)
-                price[i] = bit * static_cast<float>(kBits) / ln2 / (c[i] * c[i] + narrow * narrow);
-            const float pull = DetailBasis::is_tangential(i) ? kTangentialPull : 1;
-            const float area = std::max(kLeastArea, basis.relative_area(i));
-            inverse[i] = 1 / (price[i] + basis.norm(i) * basis.norm(i) * kPullsPerSample * area * pull);
-        });
-    }
 };
 
 // Conjugate gradients; c: the coordinates now. Returns their change.

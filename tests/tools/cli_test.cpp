@@ -175,6 +175,50 @@ TEST_F(Cli, CompareReadsMeshesAndGimFilesOnBothSides) {
     }
 }
 
+TEST_F(Cli, EvenSamplesAreNotWhereTheUsualOnesAre) {
+    save_corpus_mesh("terrain-3200", folder.file("terrain.obj"));
+    const auto file = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments = {"encode",
+                                              folder.file("terrain.obj"),
+                                              folder.file("terrain.gim"),
+                                              "--size",
+                                              "33",
+                                              "--lossless",
+                                              "--fit",
+                                              "none",
+                                              "--quiet"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        EXPECT_EQ(gim(arguments).status, 0);
+        return load_text(folder.file("terrain.gim"));
+    };
+    EXPECT_NE(file({"--even"}), file({}));
+}
+
+// A square against its left half: half of the square is up to 1 away from it, all of the half lies on the square.
+TEST_F(Cli, CompareTellsReferenceAndTestApart) {
+    save(folder.file("whole.obj"), "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
+    save(folder.file("half.obj"), "v -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4\n");
+    const Outcome outcome =
+        gim({"compare", folder.file("whole.obj"), folder.file("half.obj"), "--samples", "5000", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json comparison = json::parse(outcome.out)["comparison"];
+    EXPECT_NEAR(comparison["diagonal"].get<double>(), std::sqrt(8.0), 1e-6);
+    EXPECT_NEAR(comparison["max_to_test"].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(comparison["max_to_reference"].get<double>(), 0, 1e-6);
+}
+
+TEST_F(Cli, CompareTakesTheLevelOfTheTestSurface) {
+    double finer = std::numeric_limits<double>::infinity();
+    for (const char* level : {"0", "1", "2"}) {
+        const Outcome outcome =
+            gim({"compare", mesh_path(), gim_path(), "--samples", "5000", "--json", "--level", level});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const double psnr = json::parse(outcome.out)["comparison"]["psnr"].get<double>();
+        EXPECT_LT(psnr, finer) << level;
+        finer = psnr;
+    }
+}
+
 TEST_F(Cli, RenderDrawsOneOrThreePanels) {
     EXPECT_EQ(gim({"render", mesh_path(), folder.file("one.png"), "--size", "64", "--wire", "--flat"}).status, 0);
     EXPECT_EQ(gim({"render", mesh_path(), folder.file("three.png"), "--gim", gim_path(), "--size", "64"}).status, 0);

@@ -56,6 +56,16 @@ TEST(Colors, PlyVertexColorsAreScaledByTheirType) {
     EXPECT_TRUE(read_input(folder.file("a.ply")).value().mesh.appearance.empty());
 }
 
+TEST(Colors, ATextureThatIsNamedTwiceIsReadAndMissedOnce) {
+    TemporaryFolder folder;
+    save_png(folder.file("a.png"));
+    Textures textures(folder.path());
+    EXPECT_EQ(textures.load("a.png"), textures.load("a.png"));
+    EXPECT_EQ(textures.load("none.png"), textures.load("none.png"));
+    EXPECT_EQ(textures.images.size(), 1u);
+    EXPECT_EQ(textures.warnings.size(), 1u);
+}
+
 TEST(Colors, PlyTexturesComeWithTheirFaceCorners) {
     TemporaryFolder folder;
     save_png(folder.file("four colors.png"));

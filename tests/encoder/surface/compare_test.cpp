@@ -56,6 +56,29 @@ TEST(Compare, PartOfASurfaceIsNearTheWholeButNotTheOtherWayRound) {
     EXPECT_EQ(result.value().rms, result.value().rms_to_test);
 }
 
+// Ground of area 4 and a fin of area 2 and height 1 upright on it: 2/6 of the area has the mean square height 1/3.
+TEST(Compare, AFinCountsWhicheverSurfaceHasIt) {
+    const TriangleMesh ground = square(6);
+    TriangleMesh with_fin = ground;
+    const auto first = static_cast<uint32_t>(with_fin.positions.size());
+    with_fin.positions.insert(with_fin.positions.end(), {{-1, 0, 0}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 1}});
+    with_fin.triangles.push_back({first, first + 1, first + 2});
+    with_fin.triangles.push_back({first, first + 2, first + 3});
+    const auto lost = compare(with_fin, ground, {}), grown = compare(ground, with_fin, {});
+    ASSERT_TRUE(lost.ok() && grown.ok());
+    EXPECT_NEAR(lost.value().rms_to_reference, 0, 1e-12);
+    EXPECT_NEAR(lost.value().rms_to_test, 1.0 / 3, 1e-4);
+    EXPECT_NEAR(grown.value().rms_to_test, 0, 1e-12);
+    EXPECT_NEAR(grown.value().rms_to_reference, 1.0 / 3, 1e-4);
+    for (const Comparison& c : {lost.value(), grown.value()}) {
+        EXPECT_NEAR(c.rms, 1.0 / 3, 1e-4);
+        EXPECT_NEAR(c.hausdorff, 1, 1e-12);
+        EXPECT_NEAR(c.psnr, 20 * std::log10(3 * c.diagonal), 5e-3);
+    }
+    EXPECT_NEAR(lost.value().diagonal, 3, 1e-12);  // the reference's: 2 x 2 x 1
+    EXPECT_NEAR(grown.value().diagonal, std::sqrt(8.0), 1e-12);
+}
+
 TEST(Compare, ConcentricSpheresAreTheirRadiiApart) {
     TriangleMesh outer = corpus::sphere(40);
     for (auto& p : outer.positions) p = {1.1 * p[0], 1.1 * p[1], 1.1 * p[2]};
