@@ -41,8 +41,8 @@ std::vector<float> image_planes() {
     return planes;
 }
 
-const GeometryImage& image() {
-    static const GeometryImage made = import_image(image_planes(), kSide, 2e-6).value();
+const SquareImage& image() {
+    static const SquareImage made = import_image(image_planes(), kSide, 2e-6).value();
     return made;
 }
 
@@ -50,7 +50,7 @@ std::vector<uint8_t> coded(bool lossless, double quantizer) {
     CodingParameters p;
     p.lossless = lossless;
     p.quantizer = quantizer;
-    return write_gim({&image(), 1}, p).value();
+    return write_squares({&image(), 1}, p).value();
 }
 
 void whole_decode(benchmark::State& state, const std::vector<uint8_t>& bytes, bool normals) {

@@ -39,10 +39,8 @@ Sideband tube() { return {3, 0, {{2, 2}, {kNoMate, 2}, {0, 2}, {kNoMate, 2}}}; }
 // ---- images ----------------------------------------------------------------------------------------------------------
 
 // A smooth hill of integers, noise of 0 .. noise-1 on it, and both sides of every seam equal.
-GeometryImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t seed) {
-    GeometryImage image;
-    image.side = side;
-    image.sideband = std::move(sideband);
+SquareImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t seed) {
+    SquareGrid image{side, {}};
     Random random(seed);
     const uint32_t last = side - 1, cell = 1024 / last;
     for (uint32_t r = 0; r < side; ++r) {
@@ -57,7 +55,7 @@ GeometryImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t se
         }
     }
     SeamTable seams;
-    if (build_seam_table(image.sideband, &seams) != Status::kOk) std::abort();
+    if (build_seam_table(sideband, &seams) != Status::kOk) std::abort();
     std::vector<uint32_t> class_of(ring_length(side)), first(ring_length(side), UINT32_MAX);
     ring_classes(seams, side, class_of);
     for (uint32_t k = 0; k < class_of.size(); ++k) {
@@ -65,7 +63,7 @@ GeometryImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t se
         const GridPoint to = ring_point(side, k), from = ring_point(side, first[class_of[k]]);
         image.at(to.row, to.column) = image.at(from.row, from.column);
     }
-    return image;
+    return glue_square(std::move(image), std::move(sideband)).value();
 }
 
 CodingParameters lossless(uint32_t bits, uint32_t base_side) {
@@ -81,18 +79,18 @@ CodingParameters lossy(uint32_t bits, uint32_t base_side, double quantizer) {
     return p;
 }
 
-Bytes encode(const std::vector<GeometryImage>& images, const CodingParameters& parameters) {
-    auto file = write_gim(images, parameters);
+Bytes encode(const std::vector<SquareImage>& images, const CodingParameters& parameters) {
+    auto file = write_squares(images, parameters);
     if (!file.ok()) {
-        std::fprintf(stderr, "side %u: %s\n", images[0].side, file.error().message.c_str());
+        std::fprintf(stderr, "side %u: %s\n", images[0].side(), file.error().message.c_str());
         std::abort();
     }
     return file.value();
 }
 
 // Values of undefined samples come from a search with floats: on another machine they may differ, and so may these bytes.
-Bytes encode(const ChartImages& charts, const CodingParameters& parameters) {
-    auto writer = ChartFileWriter::create(charts, parameters);
+Bytes encode(const ChartLevels& charts, const CodingParameters& parameters) {
+    auto writer = charts_writer(charts, parameters);
     if (!writer.ok()) {
         std::fprintf(stderr, "charts: %s\n", writer.error().message.c_str());
         std::abort();
@@ -265,12 +263,12 @@ void write_valid(Writer& out) {
     }
 
     // No frames; and the same integers in frames without areas, and with steps as far apart as they get.
-    const GeometryImage folded = hill(33, folded_sides(), 5, 3);
+    const SquareImage folded = hill(33, folded_sides(), 5, 3);
     const Bytes framed = encode({folded}, lossy(12, 9, 4));
     out.valid("frames-none", with_parts(framed, [&](Parts& p) {
                   p.header.tangential = p.header.cell_area = 0;
                   Pyramid<float> pyramid =
-                      analyse<Irreversible97>(to_units<float>(folded.positions, p.header), folded.side);
+                      analyse<Irreversible97>(to_units<float>(folded.positions, p.header), folded.side());
                   subtract_middle(&pyramid, p.header.bits);
                   Pyramid<int32_t> bands = quantize_bands(pyramid, {p.header.quantizer}).bands;
                   std::vector<Bytes> streams = code_bands(bands, p.header.level_count);
@@ -283,7 +281,7 @@ void write_valid(Writer& out) {
     out.valid("frames-wide-steps", with_frames(255, 255));
     out.valid("frames-narrow-steps", with_frames(1, 1));
     // A surface that is a line has no normals.
-    GeometryImage line = hill(33, open_square(), 64, 18);
+    SquareImage line = hill(33, open_square(), 64, 18);
     for (Vec3& p : line.positions) p.y() = p.z() = 0;
     out.valid("frames-of-a-line", encode({line}, lossy(12, 9, 4)));
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "encoder/charts/multi_chart_image.h"
-#include "encoder/image/geometry_image.h"
+#include "encoder/charts/glue_charts.h"
+#include "encoder/squares/square_image.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
@@ -21,22 +21,20 @@ inline Mesh mesh_of(const TriangleMesh& input) {
 }
 
 // `at` of (u, v) in the unit square: columns run along u, rows along v.
-inline GeometryImage image_of(uint32_t side, const Sideband& sideband, const std::function<Vec3(double, double)>& at) {
-    GeometryImage image;
-    image.side = side;
-    image.sideband = sideband;
+inline SquareImage image_of(uint32_t side, const Sideband& sideband, const std::function<Vec3(double, double)>& at) {
+    SquareGrid grid{side, {}};
     for (uint32_t row = 0; row < side; ++row) {
         for (uint32_t column = 0; column < side; ++column) {
-            image.positions.push_back(at(double(column) / (side - 1), double(row) / (side - 1)));
+            grid.positions.push_back(at(double(column) / (side - 1), double(row) / (side - 1)));
         }
     }
-    return image;
+    return glue_square(std::move(grid), sideband).value();
 }
 
 // A torus, opposite sides of the square glued; the grid slants so that it misses the lines of a regular mesh.
-inline GeometryImage torus_image(uint32_t side, double radius, double tube_radius) {
+inline SquareImage torus_image(uint32_t side, double radius, double tube_radius) {
     const Sideband sideband{2, 0, {{2, 1}, {3, 1}, {0, 1}, {1, 1}}};
-    GeometryImage image = image_of(side, sideband, [=](double u, double v) {
+    SquareImage image = image_of(side, sideband, [=](double u, double v) {
         const double wave = 0.02 * std::sin(2 * std::numbers::pi * (u + 2 * v));
         const double a = 2 * std::numbers::pi * (u + wave), b = 2 * std::numbers::pi * (v + wave + 0.1);
         const double from_axis = radius + tube_radius * std::cos(b);
@@ -49,6 +47,9 @@ inline GeometryImage torus_image(uint32_t side, double radius, double tube_radiu
     image.at(side - 1, side - 1) = image.at(0, 0);
     return image;
 }
+
+// The gluing of an image whose mask and seams are in order.
+inline void glue(MultiChartImage& image) { image.gluing = glue_charts(image.mask, image.seams).value(); }
 
 // A sphere of radius 1 as two charts of side x side samples, a column apart, zipped all around. The first lacks its lower
 // left corner, which makes a cell of three; and its second sample is the same surface point as its first.
@@ -77,9 +78,9 @@ inline MultiChartImage sphere_charts(uint32_t side) {
     for (size_t i = 0; i < image.positions.size(); ++i) {
         if (!image.mask.defined[i]) image.positions[i] = Vec3::Zero();
     }
-    const auto point = glue_samples(image.mask, image.seams);
+    glue(image);
     for (size_t i = 0; i < image.positions.size(); ++i) {
-        if (image.mask.defined[i]) image.positions[i] = image.positions[point.value()[i]];
+        if (image.mask.defined[i]) image.positions[i] = image.positions[image.gluing.representative[i]];
     }
     return image;
 }

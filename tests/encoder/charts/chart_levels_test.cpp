@@ -33,18 +33,18 @@ MultiChart multi_chart(const Mesh& mesh, uint32_t samples) {
     return std::move(made.value());
 }
 
-ChartImages images_of(const MultiChart& made, uint32_t most_levels, uint32_t threads = 0) {
-    auto images = make_chart_images(made.image, made.atlas, made.packing, made.topology, most_levels, threads);
+ChartLevels images_of(const MultiChart& made, uint32_t most_levels, uint32_t threads = 0) {
+    auto images = make_chart_levels(made.image, made.atlas, made.packing, made.topology, most_levels, threads);
     EXPECT_TRUE(images.ok()) << images.error().message;
     return std::move(images.value());
 }
 
-class ChartImagesOf : public ::testing::TestWithParam<const char*> {
+class ChartLevelsOf : public ::testing::TestWithParam<const char*> {
   protected:
     const MultiChart made = multi_chart(surface_named(GetParam()), 6000);
-    const ChartImages images = images_of(made, 8);
+    const ChartLevels images = images_of(made, 8);
 };
-INSTANTIATE_TEST_SUITE_P(Surfaces, ChartImagesOf,
+INSTANTIATE_TEST_SUITE_P(Surfaces, ChartLevelsOf,
                          ::testing::Values("sphere-1728", "torus-576", "terrain-3200", "annulus-512", "four-pieces"),
                          [](const auto& surface) {
                              std::string name = surface.param;
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, ChartImagesOf,
                              return name;
                          });
 
-TEST_P(ChartImagesOf, BoxesHoldTheChartsWhereTheRectangleHasThem) {
+TEST_P(ChartLevelsOf, BoxesHoldTheChartsWhereTheRectangleHasThem) {
     ASSERT_EQ(images.charts.size(), made.atlas.charts.size());
     uint64_t count = 0;
     for (size_t c = 0; c < images.charts.size(); ++c) {
@@ -75,7 +75,7 @@ TEST_P(ChartImagesOf, BoxesHoldTheChartsWhereTheRectangleHasThem) {
     EXPECT_EQ(images.defined_count(), count);
 }
 
-TEST_P(ChartImagesOf, BordersOfEveryLevelAreClosedWalksInTheirBoxes) {
+TEST_P(ChartLevelsOf, BordersOfEveryLevelAreClosedWalksInTheirBoxes) {
     ASSERT_GE(images.levels.size(), 2u);
     for (uint32_t level = 0; level < images.levels.size(); ++level) {
         const LevelBorders& borders = images.levels[level];
@@ -118,11 +118,11 @@ TEST_P(ChartImagesOf, BordersOfEveryLevelAreClosedWalksInTheirBoxes) {
     }
 }
 
-TEST(ChartImages, NoMoreLevelsThanAskedForAndTheFinestAlways) {
+TEST(ChartLevels, NoMoreLevelsThanAskedForAndTheFinestAlways) {
     const MultiChart made = multi_chart(surface_named("torus-576"), 6000);
-    const ChartImages many = images_of(made, 8);
+    const ChartLevels many = images_of(made, 8);
     for (const uint32_t most : {1u, 2u}) {
-        const ChartImages few = images_of(made, most);
+        const ChartLevels few = images_of(made, most);
         EXPECT_EQ(few.levels.size(), most);
         EXPECT_EQ(few.levels[0].loops.size(), many.levels[0].loops.size());
         EXPECT_EQ(few.levels[0].lengths, many.levels[0].lengths);
@@ -130,15 +130,15 @@ TEST(ChartImages, NoMoreLevelsThanAskedForAndTheFinestAlways) {
     }
 }
 
-TEST(ChartImages, LevelsOfAnotherTopologyAreNotKept) {
+TEST(ChartLevels, LevelsOfAnotherTopologyAreNotKept) {
     MultiChart made = multi_chart(surface_named("torus-576"), 6000);
     made.topology.genus += 1;
     EXPECT_EQ(images_of(made, 8).levels.size(), 1u);
 }
 
-TEST(ChartImages, ThreadsDoNotMatter) {
+TEST(ChartLevels, ThreadsDoNotMatter) {
     const MultiChart made = multi_chart(surface_named("tori-2"), 6000);
-    const ChartImages one = images_of(made, 8, 1), three = images_of(made, 8, 3);
+    const ChartLevels one = images_of(made, 8, 1), three = images_of(made, 8, 3);
     ASSERT_EQ(one.levels.size(), three.levels.size());
     for (size_t l = 0; l < one.levels.size(); ++l) {
         EXPECT_EQ(one.levels[l].loops, three.levels[l].loops);
@@ -147,7 +147,7 @@ TEST(ChartImages, ThreadsDoNotMatter) {
     EXPECT_EQ(one.positions, three.positions);
 }
 
-TEST(ChartImages, SameTopologyAsksForManifolds) {
+TEST(ChartLevels, SameTopologyAsksForManifolds) {
     TopologySummary a;
     a.manifold = true;
     a.components = 1;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "encoder/charts/chart_levels.h"
+#include "encoder/charts/glue_charts.h"
 #include "encoder/surface/topology_summary.h"
 #include "format/band_code.h"
 
@@ -81,22 +82,23 @@ inline MadeLevel make_level(const std::vector<MadeChart>& charts, const std::vec
             made.image.seams.zippers.push_back(even_zipper(paths[p].length, paths[mates[p]].length));
     }
     made.image.positions.assign(mask.defined.size(), Vec3::Zero());
+    auto gluing = glue_charts(mask, made.image.seams);
+    if (!gluing.ok()) {
+        std::fprintf(stderr, "%s\n", gluing.error().message.c_str());
+        std::abort();
+    }
+    made.image.gluing = std::move(gluing.value());
     return made;
 }
 
-inline TopologySummary topology_of(const MultiChartImage& image) {
-    const auto surface = reconstruct(image);
-    if (!surface.ok()) {
-        std::fprintf(stderr, "%s\n", surface.error().message.c_str());
-        std::abort();
-    }
-    const Mesh& mesh = surface.value().mesh;
+inline TopologySummary topology_of(const GeometryImage& image) {
+    const Mesh mesh = surface_of(image).mesh;
     return analyse_topology(mesh.triangles, mesh.positions.size()).summary;
 }
 
 // Positions and masks of the boxes; all samples of a point have the position of its first.
 inline void take_samples(const std::vector<MadeChart>& charts, const MadeLevel& made,
-                         const std::vector<uint32_t>& point, ChartImages* images) {
+                         const std::vector<uint32_t>& point, ChartLevels* images) {
     std::vector<Vec3> all(point.size(), Vec3::Zero());
     const auto for_each_sample = [&](const auto& f) {
         for (size_t k = 0; k < charts.size(); ++k) {
@@ -118,9 +120,9 @@ inline void take_samples(const std::vector<MadeChart>& charts, const MadeLevel& 
 }
 
 // mates: per path, chart after chart. Topology is the caller's to ask for.
-inline ChartImages made_images(uint32_t width, uint32_t height, const std::vector<MadeChart>& charts,
+inline ChartLevels made_images(uint32_t width, uint32_t height, const std::vector<MadeChart>& charts,
                                const std::vector<uint32_t>& mates, uint32_t level_count) {
-    ChartImages images;
+    ChartLevels images;
     images.image.mask.width = width;  // the writer asks for no more of it
     images.image.mask.height = height;
     images.mates = mates;
@@ -128,21 +130,15 @@ inline ChartImages made_images(uint32_t width, uint32_t height, const std::vecto
         images.charts.push_back({chart.columns, chart.rows, chart.atlas_column, chart.atlas_row, chart.path_count});
     for (uint32_t level = 0; level < level_count; ++level) {
         MadeLevel made = make_level(charts, mates, level);
-        const auto point = glue_samples(made.image.mask, made.image.seams);
-        if (!point.ok()) {
-            std::fprintf(stderr, "%s\n", point.error().message.c_str());
-            std::abort();
-        }
+        const std::vector<uint32_t>& point = made.image.gluing.representative;
         LevelBorders borders;
         borders.loops = made.loops;
         for (const SeamPath& path : made.image.seams.paths) borders.lengths.push_back(path.length);
         borders.zippers = made.image.seams.zippers;
-        const auto surface = reconstruct(made.image);
-        if (!surface.ok()) std::abort();
-        borders.size.triangles = static_cast<uint32_t>(surface.value().mesh.triangles.size());
-        for (uint32_t i = 0; i < point.value().size(); ++i) borders.size.vertices += point.value()[i] == i;
+        borders.size.triangles = static_cast<uint32_t>(surface_of(made.image).mesh.triangles.size());
+        for (uint32_t i = 0; i < point.size(); ++i) borders.size.vertices += point[i] == i;
         images.levels.push_back(std::move(borders));
-        if (level == 0) take_samples(charts, made, point.value(), &images);
+        if (level == 0) take_samples(charts, made, point, &images);
     }
     return images;
 }
@@ -181,7 +177,7 @@ inline MadeChart disk_chart(uint32_t radius, uint32_t room, uint32_t path_count,
 }
 
 // Two disks, not of one size if wanted, make a sphere.
-inline ChartImages pillow(uint32_t radius, uint32_t other_radius, uint32_t level_count) {
+inline ChartLevels pillow(uint32_t radius, uint32_t other_radius, uint32_t level_count) {
     std::vector<MadeChart> charts = {disk_chart(radius, 1, 3, 1), disk_chart(other_radius, 2, 3, -1)};
     charts[1].atlas_column = static_cast<int32_t>(2 * radius + 1);
     charts[1].atlas_row = -1;
@@ -190,7 +186,7 @@ inline ChartImages pillow(uint32_t radius, uint32_t other_radius, uint32_t level
 }
 
 // A rectangle whose opposite sides are one.
-inline ChartImages torus_of_one_chart(uint32_t side, uint32_t level_count) {
+inline ChartLevels torus_of_one_chart(uint32_t side, uint32_t level_count) {
     MadeChart chart = rectangle_chart(side, side, 4);
     const int half = static_cast<int>(side / 2);
     chart.position = [half](uint32_t c, uint32_t r) {
@@ -204,7 +200,7 @@ inline ChartImages torus_of_one_chart(uint32_t side, uint32_t level_count) {
 }
 
 // Two rectangles joined along one path; the others are boundaries.
-inline ChartImages open_sheet(uint32_t level_count) {
+inline ChartLevels open_sheet(uint32_t level_count) {
     std::vector<MadeChart> charts = {rectangle_chart(10, 7, 4), rectangle_chart(6, 11, 4)};
     charts[1].atlas_column = 11;
     charts[1].position = [](uint32_t c, uint32_t r) { return Vec3(900 + c * 110, r * 60 + 40, c * r * 5); };

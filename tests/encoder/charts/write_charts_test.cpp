@@ -8,6 +8,7 @@
 
 #include "encoder/code/assemble_file.h"
 #include "encoder/code/decode_surface.h"
+#include "encoder/code/file_units.h"
 #include "gim/decoder.hpp"
 #include "tests/encoder/charts/made_charts.h"
 
@@ -29,8 +30,8 @@ CodingParameters lossy(double quantizer) {
     return p;
 }
 
-Bytes written(const ChartImages& images, const CodingParameters& parameters) {
-    auto writer = ChartFileWriter::create(images, parameters);
+Bytes written(const ChartLevels& images, const CodingParameters& parameters) {
+    auto writer = charts_writer(images, parameters);
     EXPECT_TRUE(writer.ok()) << writer.error().message;
     return writer.value().write(parameters.quantizer);
 }
@@ -47,7 +48,7 @@ std::vector<float> rectangle_of(const Bytes& bytes, gim_info* info) {
     return grid;
 }
 
-std::vector<std::pair<std::string, ChartImages>> all_images() {
+std::vector<std::pair<std::string, ChartLevels>> all_images() {
     return {{"equal disks", pillow(7, 7, 2)},
             {"unequal disks", pillow(9, 6, 2)},
             {"torus", torus_of_one_chart(17, 3)},
@@ -62,7 +63,7 @@ TEST(WriteCharts, LosslessSamplesAreTheQuantizedOnesAndTheRestIsNotANumber) {
             const Bytes bytes = written(images, lossless(bits));
             const std::vector<float> grid = rectangle_of(bytes, &info);
             EXPECT_EQ(info.bits, bits);
-            Header header;
+            Units header;
             header.bits = info.bits;
             header.step = info.step;
             std::copy_n(info.origin, 3, header.origin.begin());
@@ -74,7 +75,7 @@ TEST(WriteCharts, LosslessSamplesAreTheQuantizedOnesAndTheRestIsNotANumber) {
                     if (!images.defined[c][i]) continue;
                     const auto column = static_cast<uint32_t>(box.atlas_column) + i % box.columns,
                                row = static_cast<uint32_t>(box.atlas_row) + i / box.columns;
-                    const uint32_t at = row * images.image.width() + column;
+                    const uint32_t at = row * images.image.mask.width + column;
                     ASSERT_EQ(seen[at]++, 0) << name << ": charts upon each other";
                     for (size_t k = 0; k < 3; ++k)
                         ASSERT_EQ(grid[size_t{at} * 3 + k],
@@ -110,8 +111,8 @@ TEST(WriteCharts, EveryLevelHasTheClaimedSizeAndTheTopologyOfTheFirst) {
 }
 
 TEST(WriteCharts, FinerQuantizersGiveMoreBytesAndSmallerErrors) {
-    const ChartImages images = pillow(9, 6, 2);
-    const auto writer = ChartFileWriter::create(images, lossy(1));
+    const ChartLevels images = pillow(9, 6, 2);
+    const auto writer = charts_writer(images, lossy(1));
     ASSERT_TRUE(writer.ok());
     gim_info exact_info, info;
     const std::vector<float> exact = rectangle_of(written(images, lossless(20)), &exact_info);
@@ -135,25 +136,25 @@ TEST(WriteCharts, FinerQuantizersGiveMoreBytesAndSmallerErrors) {
 }
 
 TEST(WriteCharts, WhatTheFormatCannotTakeIsRefusedWithWords) {
-    const auto refused = [](const std::function<void(ChartImages&, CodingParameters&)>& change,
+    const auto refused = [](const std::function<void(ChartLevels&, CodingParameters&)>& change,
                             const std::string& word) {
-        ChartImages images = open_sheet(2);
+        ChartLevels images = open_sheet(2);
         CodingParameters parameters = lossless();
         change(images, parameters);
-        const auto writer = ChartFileWriter::create(images, parameters);
+        const auto writer = charts_writer(images, parameters);
         return !writer.ok() && writer.error().message.find(word) != std::string::npos;
     };
-    EXPECT_FALSE(refused([](ChartImages&, CodingParameters&) {}, ""));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i = {}; }, "no chart"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.levels.clear(); }, "no chart"));
-    EXPECT_TRUE(refused([](ChartImages&, CodingParameters& p) { p.bits = 7; }, "bits 7"));
-    EXPECT_TRUE(refused([](ChartImages&, CodingParameters& p) { p.bits = 21; }, "bits 21"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.charts.resize(kMaxCharts + 1); }, "8193 charts"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.mates.resize(kMaxChartPaths + 1); }, "fewer charts"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.image.mask.width = kMaxAtlasSide + 1; }, "too long"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.charts[1].rows = kMaxChartSide + 1; }, "chart 1"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.positions[1][3].x() = std::nan(""); }, "chart 1"));
-    EXPECT_TRUE(refused([](ChartImages& i, CodingParameters&) { i.positions[0][3].z() = 1e31; }, "chart 0"));
+    EXPECT_FALSE(refused([](ChartLevels&, CodingParameters&) {}, ""));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i = {}; }, "no chart"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.levels.clear(); }, "no chart"));
+    EXPECT_TRUE(refused([](ChartLevels&, CodingParameters& p) { p.bits = 7; }, "bits 7"));
+    EXPECT_TRUE(refused([](ChartLevels&, CodingParameters& p) { p.bits = 21; }, "bits 21"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.charts.resize(kMaxCharts + 1); }, "8193 charts"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.mates.resize(kMaxChartPaths + 1); }, "fewer charts"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.image.mask.width = kMaxAtlasSide + 1; }, "too long"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.charts[1].rows = kMaxChartSide + 1; }, "chart 1"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.positions[1][3].x() = std::nan(""); }, "chart 1"));
+    EXPECT_TRUE(refused([](ChartLevels& i, CodingParameters&) { i.positions[0][3].z() = 1e31; }, "chart 0"));
 }
 
 TEST(WriteCharts, TextAndMeasuredLevelsAreCarried) {

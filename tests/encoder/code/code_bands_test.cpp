@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t kSide = 129;
 
 // A sheet with waves, more of them on one side; nothing is glued, so that decoders fuse nothing.
-GeometryImage waves() {
+SquareImage waves() {
     return image_of(kSide, open_sideband(), [](double u, double v) {
         return Vec3(u + 0.1 * u * u, v + 0.05 * std::sin(5 * u), 0.1 * std::sin(17 * u * u) * std::cos(9 * v));
     });
@@ -28,15 +28,15 @@ CodingParameters lossy(double quantizer) {
     return parameters;
 }
 
-SeamTable seams_of(const GeometryImage& image) {
+SeamTable seams_of(const SquareImage& image) {
     SeamTable seams;
     EXPECT_EQ(build_seam_table(image.sideband, &seams), Status::kOk);
     return seams;
 }
 
-Pyramid<float> pyramid_of(const GeometryImage& image, const Header& header) {
+Pyramid<float> pyramid_of(const SquareImage& image, const Units& header) {
     const SeamTable seams = seams_of(image);
-    Pyramid<float> pyramid = analyse<Irreversible97>(to_units<float>(image.positions, header), image.side, &seams);
+    Pyramid<float> pyramid = analyse<Irreversible97>(to_units<float>(image.positions, header), image.side(), &seams);
     subtract_middle(&pyramid, header.bits);
     return pyramid;
 }
@@ -55,10 +55,10 @@ std::vector<float> decoded_units(const std::vector<uint8_t>& bytes) {
 }
 
 TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
-    for (const GeometryImage& image : {waves(), torus_image(kSide, 700, 300)})
+    for (const SquareImage& image : {waves(), torus_image(kSide, 700, 300)})
         for (const double quantizer : {1.0, 8.0, 60.0, 500.0}) {
             const SeamTable seams = seams_of(image);
-            const GimWriter writer = GimWriter::create({&image, 1}, lossy(quantizer)).value();
+            const FileWriter writer = squares_writer({&image, 1}, lossy(quantizer)).value();
             const Header header = writer.header(quantizer);
             ASSERT_GT(header.tangential, 0);
             ASSERT_GT(header.cell_area, 1);
@@ -74,8 +74,8 @@ TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
 }
 
 TEST(CodeBands, FineSteppedDetailsComeBackThroughTheirFrames) {
-    const GeometryImage image = waves();
-    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(0.125);
+    const SquareImage image = waves();
+    const Header header = squares_writer({&image, 1}, lossy(1)).value().header(0.125);
     const Pyramid<float> pyramid = pyramid_of(image, header);
     const SeamTable seams = seams_of(image);
     const std::vector<float> before = restore<Irreversible97>(pyramid, &seams),
@@ -86,8 +86,8 @@ TEST(CodeBands, FineSteppedDetailsComeBackThroughTheirFrames) {
 }
 
 TEST(CodeBands, WithoutFramesNoImageIsMade) {
-    const GeometryImage image = waves();
-    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(8);
+    const SquareImage image = waves();
+    const Header header = squares_writer({&image, 1}, lossy(1)).value().header(8);
     const Pyramid<float> pyramid = pyramid_of(image, header);
     const QuantizedImage plain = quantize_bands(pyramid, {8}), framed = quantize_bands(pyramid, {8, true, 3, 1});
     EXPECT_TRUE(plain.image.empty());
@@ -97,8 +97,8 @@ TEST(CodeBands, WithoutFramesNoImageIsMade) {
 }
 
 TEST(CodeBands, WiderTangentialStepsKeepLessOfTheTangentialDetail) {
-    const GeometryImage image = waves();
-    const Header header = GimWriter::create({&image, 1}, lossy(1)).value().header(8);
+    const SquareImage image = waves();
+    const Header header = squares_writer({&image, 1}, lossy(1)).value().header(8);
     const Pyramid<float> pyramid = pyramid_of(image, header);
     const auto sum = [&](float tangential, bool normal) {
         const QuantizedImage quantized = quantize_bands(pyramid, {8, true, tangential, 1});

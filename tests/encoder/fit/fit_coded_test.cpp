@@ -22,8 +22,8 @@ constexpr uint32_t kSide = 65;
 Mesh bumpy_torus() { return mesh_of(corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 4)); }
 
 // Samples of the torus put onto the reference, and fitted to it.
-GeometryImage image_on(const Mesh& reference) {
-    GeometryImage image = torus_image(kSide, 0.7, 0.3);
+SquareImage image_on(const Mesh& reference) {
+    SquareImage image = torus_image(kSide, 0.7, 0.3);
     const ClosestPointTree tree(reference);
     for (Vec3& p : image.positions) p = tree.find(p).point;
     image.positions = fit(image, reference, {.strength = FitOptions::Strength::kStiff}).value().positions;
@@ -37,42 +37,38 @@ CodingParameters lossy(double quantizer) {
     return parameters;
 }
 
-Header header_for(const GeometryImage& image, double quantizer) {
-    Header header = GimWriter::create({&image, 1}, lossy(quantizer)).value().header(quantizer);
-    header.side_exponents = {};  // the writer's
-    header.level_psnr = {};
-    return header;
+Units units_for(const SquareImage& image, double quantizer) {
+    return squares_writer({&image, 1}, lossy(quantizer)).value().header(quantizer);
 }
 
-GeometryImage fitted(const GeometryImage& start, const Mesh& reference, const Header& header,
-                     CodedFit::Effort effort = CodedFit::Effort::kFinal) {
-    auto fit = CodedFit::create(start, reference, 1);
-    GeometryImage image = start;
-    image.positions = fit.value().run(header, effort);
+SquareImage fitted(const SquareImage& start, const Mesh& reference, const Units& units,
+                   CodedFit::Effort effort = CodedFit::Effort::kFinal) {
+    CodedFit fit(start, file_seams(start), reference, 1);
+    SquareImage image = start;
+    image.positions = fit.run(units, effort);
     return image;
 }
 
 TEST(FitCoded, GluedSamplesStayEqual) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference);
-    const auto gluing = glue_ring(start.sideband, kSide).value();
+    const SquareImage start = image_on(reference);
     for (const auto effort : {CodedFit::Effort::kSearch, CodedFit::Effort::kFinal}) {
-        const GeometryImage image = fitted(start, reference, header_for(start, 16), effort);
+        const SquareImage image = fitted(start, reference, units_for(start, 16), effort);
         ASSERT_EQ(image.positions.size(), start.positions.size());
         EXPECT_NE(image.positions, start.positions);
         for (size_t v = 0; v < image.positions.size(); ++v)
-            ASSERT_EQ(image.positions[v], image.positions[gluing.representative[v]]) << v;
+            ASSERT_EQ(image.positions[v], image.positions[start.gluing.representative[v]]) << v;
     }
 }
 
 TEST(FitCoded, ThreadsAndRepetitionChangeNothing) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference);
-    const Header header = header_for(start, 16);
+    const SquareImage start = image_on(reference);
+    const Units units = units_for(start, 16);
     std::vector<std::vector<Vec3>> results;
     for (const uint32_t threads : {1u, 2u, 3u}) {
         with_threads(threads,
-                     [&] { results.push_back(fitted(start, reference, header, CodedFit::Effort::kSearch).positions); });
+                     [&] { results.push_back(fitted(start, reference, units, CodedFit::Effort::kSearch).positions); });
     }
     EXPECT_EQ(results[0], results[1]);
     EXPECT_EQ(results[0], results[2]);
@@ -81,12 +77,12 @@ TEST(FitCoded, ThreadsAndRepetitionChangeNothing) {
 // Its steps fold nothing over; the quantizer, whose image it ends with, does here and there.
 TEST(FitCoded, HardlyAnythingFoldsThatWasNotFoldedBefore) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference);
+    const SquareImage start = image_on(reference);
     const uint64_t before = measure_fit(start, reference).value().folds;
     // Single fits are up to 20 off, whatever the codec: finer ones find creases. The mean tells more.
     uint64_t sum = 0;
     for (const double quantizer : {4.0, 8.0, 16.0, 64.0}) {
-        const GeometryImage image = fitted(start, reference, header_for(start, quantizer));
+        const SquareImage image = fitted(start, reference, units_for(start, quantizer));
         sum += measure_fit(image, reference).value().folds;
     }
     EXPECT_LE(sum / 4, before + kSide * kSide / 500);
@@ -95,22 +91,22 @@ TEST(FitCoded, HardlyAnythingFoldsThatWasNotFoldedBefore) {
 TEST(FitCoded, FilesAreSmallerAtTheSameErrorThanThoseOfTheStart) {
     const Mesh reference = bumpy_torus();
     const ReferenceSurface surface(reference);
-    const GeometryImage start = image_on(reference);
+    const SquareImage start = image_on(reference);
     const auto psnr = [&](const std::vector<uint8_t>& bytes) {
         return surface.compare(decode_surface(bytes, 0).value(), {.samples = 50000}).value().psnr;
     };
     for (const double quantizer : {8.0, 32.0}) {
-        const Header header = header_for(start, quantizer);
-        const GeometryImage image = fitted(start, reference, header);
+        const Units units = units_for(start, quantizer);
+        const SquareImage image = fitted(start, reference, units);
         CodingParameters parameters = lossy(quantizer);
-        parameters.units = header;
-        const std::vector<uint8_t> bytes = write_gim({&image, 1}, parameters).value();
+        parameters.units = units;
+        const std::vector<uint8_t> bytes = write_squares({&image, 1}, parameters).value();
         const double reached = psnr(bytes);
         // The largest quantizer that is as good without the fit.
         size_t needed = 0;
         for (double other = 4 * quantizer; needed == 0 && other > 1; other /= 1.1) {
             parameters.quantizer = other;
-            const std::vector<uint8_t> plain = write_gim({&start, 1}, parameters).value();
+            const std::vector<uint8_t> plain = write_squares({&start, 1}, parameters).value();
             if (psnr(plain) >= reached) needed = plain.size();
         }
         EXPECT_LT(double(bytes.size()), 0.9 * double(needed)) << quantizer;
@@ -119,24 +115,16 @@ TEST(FitCoded, FilesAreSmallerAtTheSameErrorThanThoseOfTheStart) {
 
 TEST(FitCoded, ProgressRises) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference);
+    const SquareImage start = image_on(reference);
     std::vector<double> heard;
-    (void)CodedFit::create(start, reference, 1)
-        .value()
-        .run(header_for(start, 16), CodedFit::Effort::kSearch, [&](Stage stage, double fraction) {
+    (void)CodedFit(start, file_seams(start), reference, 1)
+        .run(units_for(start, 16), CodedFit::Effort::kSearch, [&](Stage stage, double fraction) {
             EXPECT_EQ(stage, Stage::kFit);
             heard.push_back(fraction);
         });
     ASSERT_GE(heard.size(), 3u);
     EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
     EXPECT_LE(heard.back(), 1.0);
-}
-
-TEST(FitCoded, SidebandsThatDoNotFitTheImageAreRefused) {
-    const Mesh reference = bumpy_torus();
-    GeometryImage image = torus_image(kSide, 0.7, 0.3);
-    image.sideband.paths[0].length = 2;
-    EXPECT_FALSE(CodedFit::create(image, reference, 1).ok());
 }
 
 }  // namespace

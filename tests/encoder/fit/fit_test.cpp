@@ -18,8 +18,8 @@ namespace {
 Mesh bumpy_torus() { return mesh_of(corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 4)); }
 
 // Samples of the torus put onto the reference.
-GeometryImage image_on(const Mesh& reference, uint32_t side) {
-    GeometryImage image = torus_image(side, 0.7, 0.3);
+SquareImage image_on(const Mesh& reference, uint32_t side) {
+    SquareImage image = torus_image(side, 0.7, 0.3);
     const ClosestPointTree tree(reference);
     for (Vec3& p : image.positions) p = tree.find(p).point;
     return image;
@@ -32,7 +32,7 @@ Mesh creased_sheet() {
     for (auto& p : sheet.positions) p[2] = height(p[0], p[1]);
     return mesh_of(sheet);
 }
-GeometryImage sheet_image(uint32_t side) {
+SquareImage sheet_image(uint32_t side) {
     return image_of(side, open_sideband(), [](double u, double v) {
         const double x = 2 * u - 1, y = 2 * v - 1;
         return Vec3(x, y, height(x, y));
@@ -43,7 +43,7 @@ double decibels(double better, double worse) { return 20 * std::log10(worse / be
 
 TEST(Fit, ComesNearerBothWays) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference, 65);
+    const SquareImage start = image_on(reference, 65);
     for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
         const auto result = fit(start, reference, {.strength = strength, .rounds = 6});
         ASSERT_TRUE(result.ok()) << result.error().message;
@@ -57,7 +57,7 @@ TEST(Fit, ComesNearerBothWays) {
 
 TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
     const Mesh reference = bumpy_torus();
-    GeometryImage fitted = image_on(reference, 33);
+    SquareImage fitted = image_on(reference, 33);
     const auto result = fit(fitted, reference, {});
     ASSERT_TRUE(result.ok());
     fitted.positions = result.value().positions;
@@ -66,9 +66,8 @@ TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
     EXPECT_NEAR(decibels(quality.value().to_image, result.value().after.to_image), 0, 1e-6);
 
     TriangleMesh image, input;
-    const auto gluing = glue_ring(torus_image(33, 0.7, 0.3).sideband, 33);
     for (const Vec3& p : result.value().positions) image.positions.push_back({p[0], p[1], p[2]});
-    image.triangles = triangulate_grid(result.value().positions, gluing.value()).triangles;
+    image.triangles = triangulate_grid(result.value().positions, fitted.gluing).triangles;
     for (const Vec3& p : reference.positions) input.positions.push_back({p[0], p[1], p[2]});
     input.triangles = reference.triangles;
     const auto comparison = compare(input, image, {});
@@ -79,18 +78,18 @@ TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
 
 TEST(Fit, SeamsStayClosed) {
     const Mesh reference = bumpy_torus();
-    const auto result = fit(image_on(reference, 33), reference, {});
+    const SquareImage start = image_on(reference, 33);
+    const auto result = fit(start, reference, {});
     ASSERT_TRUE(result.ok());
     ASSERT_TRUE(result.value().improved);
-    const auto gluing = glue_ring(torus_image(33, 0.7, 0.3).sideband, 33);
     for (size_t v = 0; v < result.value().positions.size(); ++v) {
-        EXPECT_EQ(result.value().positions[v], result.value().positions[gluing.value().representative[v]]);
+        EXPECT_EQ(result.value().positions[v], result.value().positions[start.gluing.representative[v]]);
     }
 }
 
 TEST(Fit, ThreadsAndRepetitionChangeNothing) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference, 65);
+    const SquareImage start = image_on(reference, 65);
     const auto one = fit(start, reference, {.rounds = 4, .threads = 1}),
                two = fit(start, reference, {.rounds = 4, .threads = 2});
     ASSERT_TRUE(one.ok() && two.ok());
@@ -102,8 +101,8 @@ TEST(Fit, ThreadsAndRepetitionChangeNothing) {
 TEST(Fit, SideOfTheImageDoesNotMatter) {
     // The same samples with rows and columns exchanged look inwards.
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference, 33);
-    GeometryImage turned = start;
+    const SquareImage start = image_on(reference, 33);
+    SquareImage turned = start;
     for (uint32_t row = 0; row < 33; ++row) {
         for (uint32_t column = 0; column < 33; ++column) turned.at(column, row) = start.at(row, column);
     }
@@ -138,7 +137,7 @@ TEST(Fit, LooseSamplesFindTheCrease) {
 // Rows squeezed together in pairs, with samples of a pair exchanged: slivers that lie in the surface upside down.
 TEST(Fit, SqueezedRowsThatCrossAreUnfolded) {
     const Mesh reference = bumpy_torus();
-    GeometryImage start = image_on(reference, 65);
+    SquareImage start = image_on(reference, 65);
     for (uint32_t row = 5; row < 60; row += 4) {
         for (uint32_t column = 2; column < 63; ++column) {
             start.at(row, column) = 0.1 * start.at(row, column) + 0.9 * start.at(row - 1, column);
@@ -154,7 +153,7 @@ TEST(Fit, SqueezedRowsThatCrossAreUnfolded) {
 }
 
 TEST(Fit, AnImageThatCannotBeBetteredComesBackUnchanged) {
-    const GeometryImage start =
+    const SquareImage start =
         image_of(17, open_sideband(), [](double u, double v) { return Vec3(0.1 * u, 0.1 * v, 0); });
     const Mesh square{{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0.1, 0.1, 0), Vec3(0, 0.1, 0)}, {{0, 1, 2}, {0, 2, 3}}};
     const auto result = fit(start, square, {});
@@ -168,7 +167,7 @@ TEST(Fit, AnImageThatCannotBeBetteredComesBackUnchanged) {
 
 TEST(Fit, HeldSamplesDoNotMove) {
     const Mesh reference = bumpy_torus();
-    const GeometryImage start = image_on(reference, 33);
+    const SquareImage start = image_on(reference, 33);
     std::vector<bool> held(start.positions.size(), false);
     for (size_t v = 400; v < 500; ++v) held[v] = true;
     const auto result = fit(start, reference, {.held = held});
@@ -190,9 +189,9 @@ Mesh bumpy_sphere() { return mesh_of(corpus::roughened(corpus::sphere(20), 0.01,
 TEST(Fit, ChartsComeNearerAndStayGlued) {
     const Mesh reference = bumpy_sphere();
     const MultiChartImage image = sphere_charts(33);
-    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
+    const GridGluing& gluing = image.gluing;
     for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
-        const auto result = fit(image.positions, gluing, reference, {.strength = strength});
+        const auto result = fit(image, reference, {.strength = strength});
         ASSERT_TRUE(result.ok()) << result.error().message;
         const Fitted& fitted = result.value();
         ASSERT_TRUE(fitted.improved);
@@ -215,9 +214,8 @@ TEST(Fit, ChartsComeNearerAndStayGlued) {
 TEST(Fit, ChartsDoNotDependOnThreads) {
     const Mesh reference = bumpy_sphere();
     const MultiChartImage image = sphere_charts(33);
-    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
-    const auto one = fit(image.positions, gluing, reference, {.rounds = 4, .threads = 1}),
-               two = fit(image.positions, gluing, reference, {.rounds = 4, .threads = 2});
+    const auto one = fit(image, reference, {.rounds = 4, .threads = 1}),
+               two = fit(image, reference, {.rounds = 4, .threads = 2});
     ASSERT_TRUE(one.ok() && two.ok());
     EXPECT_TRUE(one.value().improved);
     EXPECT_EQ(one.value().positions, two.value().positions);
@@ -227,7 +225,7 @@ TEST(Fit, BordersOfChartsOnTheInputBoundaryStayThere) {
     const Mesh reference = creased_sheet();
     MultiChartImage image;
     image.mask = {40, 33, {}};
-    const GeometryImage sheet = sheet_image(33);
+    const SquareImage sheet = sheet_image(33);
     for (uint32_t row = 0; row < 33; ++row) {
         for (uint32_t column = 0; column < 40; ++column) {
             image.mask.defined.push_back(column < 33);
@@ -236,8 +234,8 @@ TEST(Fit, BordersOfChartsOnTheInputBoundaryStayThere) {
     }
     image.seams.loops = {{0, 1}};
     image.seams.paths = {{kNone, 128}};
-    const GridGluing gluing = glue_charts(image.mask, image.seams).value();
-    const auto result = fit(image.positions, gluing, reference, {});
+    glue(image);
+    const auto result = fit(image, reference, {});
     ASSERT_TRUE(result.ok());
     ASSERT_TRUE(result.value().improved);
     for (uint32_t k = 0; k < 33; ++k) {
@@ -262,10 +260,10 @@ TEST(Fit, ProgressRisesToOne) {
 
 TEST(Fit, UnusableInputIsRefused) {
     const Mesh reference = bumpy_torus();
-    GeometryImage image = image_on(reference, 17);
+    SquareImage image = image_on(reference, 17);
     EXPECT_FALSE(fit(image, Mesh{}, {}).ok());
     EXPECT_FALSE(fit(image, reference, {.held = std::vector<bool>(5)}).ok());
-    GeometryImage short_image = image;
+    SquareImage short_image = image;
     short_image.positions.pop_back();
     EXPECT_FALSE(fit(short_image, reference, {}).ok());
     image.positions[20][1] = NAN;
@@ -285,16 +283,16 @@ TEST(Fit, AuthorsImageOfTheBunnyGainsWhatThePrototypeGained) {
 
     Mesh reference = mesh_of(*model);
     for (Vec3& p : reference.positions) p = 3.545609 * p + Vec3(0.335758, 0.335798, 0.335768);
-    GeometryImage start;
-    start.side = kSide;
-    start.sideband = {
-        129, 8, {{1, 92}, {0, 92}, {3, 72}, {2, 72}, {9, 10}, {6, 36}, {5, 36}, {8, 46}, {7, 46}, {4, 10}}};
+    SquareGrid grid{kSide, {}};
     for (uint32_t row = 0; row < kFull; row += 2) {
         for (uint32_t column = 0; column < kFull; column += 2) {
             const size_t v = row * kFull + column;
-            start.positions.emplace_back(planes[v], planes[v + kFull * kFull], planes[v + 2 * kFull * kFull]);
+            grid.positions.emplace_back(planes[v], planes[v + kFull * kFull], planes[v + 2 * kFull * kFull]);
         }
     }
+    const Sideband sideband = {
+        129, 8, {{1, 92}, {0, 92}, {3, 72}, {2, 72}, {9, 10}, {6, 36}, {5, 36}, {8, 46}, {7, 46}, {4, 10}}};
+    const SquareImage start = glue_square(std::move(grid), sideband).value();
     // The base of the bunny is open in the model and filled in the image.
     const ClosestPointTree tree(reference);
     const Topology topology = build_topology(reference);

@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kSide = 65;
 
 // A torus in units whose cells differ in area by more than an order of magnitude: rows crowd on its inner side.
-GeometryImage crowded_torus() {
+SquareImage crowded_torus() {
     return image_of(kSide, {}, [](double u, double v) {
         const double turn = 2 * std::numbers::pi, a = turn * u, b = turn * v - 0.8 * std::sin(turn * v);
         const double from_axis = 700 - 300 * std::cos(b);
@@ -23,7 +23,7 @@ GeometryImage crowded_torus() {
 }
 
 // Per sample, a quarter of the area of the cells around it.
-std::vector<double> areas_at(const GeometryImage& image) {
+std::vector<double> areas_at(const SquareImage& image) {
     std::vector<double> areas(image.positions.size(), 0.0);
     for (uint32_t row = 0; row + 1 < kSide; ++row) {
         for (uint32_t column = 0; column + 1 < kSide; ++column) {
@@ -39,7 +39,7 @@ std::vector<double> areas_at(const GeometryImage& image) {
 // Distances are sampled by area on both surfaces: what a move of the samples costs is twice the sum of its squares, each
 // times the sample's area over the mean. The fit scales by that, or it would go on for long where cells are large.
 TEST(Prices, ScaleIsTheCurvatureOfTheDistances) {
-    const GeometryImage image = crowded_torus();
+    const SquareImage image = crowded_torus();
     const std::vector<double> areas = areas_at(image);
     double mean = 0;
     for (const double area : areas) mean += area / ((kSide - 1) * (kSide - 1));

@@ -100,7 +100,7 @@ TEST(StencilSolver, GluedSamplesAreOneUnknown) {
 
 TEST(StencilSolver, UndefinedSamplesStayAtZero) {
     const MultiChartImage image = sphere_charts(5);
-    expect_equal_to_elimination(glue_charts(image.mask, image.seams).value(), std::vector<bool>(55, false));
+    expect_equal_to_elimination(image.gluing, std::vector<bool>(55, false));
 }
 
 TEST(StencilSolver, FixedSamplesStayAtZero) {

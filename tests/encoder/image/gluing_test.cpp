@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "encoder/squares/square_image.h"
 #include "encoder/surface/topology_summary.h"
 #include "tests/encoder/grid_images.h"
 
@@ -9,13 +10,8 @@ namespace gim {
 namespace {
 
 TopologySummary topology_of(const GeometryImage& image) {
-    const auto gluing = glue_ring(image.sideband, image.side);
-    EXPECT_TRUE(gluing.ok());
-    std::vector<Triangle> triangles = triangulate_grid(image.positions, gluing.value()).triangles;
-    for (Triangle& t : triangles) {
-        for (uint32_t& v : t) v = gluing.value().representative[v];
-    }
-    return analyse_topology(triangles, image.positions.size()).summary;
+    const Mesh mesh = surface_of(image).mesh;
+    return analyse_topology(mesh.triangles, mesh.positions.size()).summary;
 }
 
 TEST(GridSurface, GluedTorusIsAClosedSurfaceOfGenusOne) {
@@ -28,14 +24,13 @@ TEST(GridSurface, GluedTorusIsAClosedSurfaceOfGenusOne) {
 }
 
 TEST(GridSurface, OpenSquareHasOneBoundary) {
-    const GeometryImage image = image_of(9, open_sideband(), [](double u, double v) { return Vec3(u, v, 0); });
+    const SquareImage image = image_of(9, open_sideband(), [](double u, double v) { return Vec3(u, v, 0); });
     const TopologySummary s = topology_of(image);
     EXPECT_EQ(s.boundary_loops, 1u);
     EXPECT_EQ(s.boundary_edges, 32u);
-    const auto gluing = glue_ring(image.sideband, image.side);
-    EXPECT_TRUE(gluing.value().shared.empty());
-    EXPECT_TRUE(gluing.value().on_input_boundary[3]);
-    EXPECT_FALSE(gluing.value().on_input_boundary[10]);
+    EXPECT_TRUE(image.gluing.shared.empty());
+    EXPECT_TRUE(image.gluing.on_input_boundary[3]);
+    EXPECT_FALSE(image.gluing.on_input_boundary[10]);
 }
 
 TEST(GridSurface, BoundarySpreadsOverTheClassOfACutNode) {
@@ -50,37 +45,29 @@ TEST(GridSurface, BoundarySpreadsOverTheClassOfACutNode) {
 }
 
 TEST(GridSurface, ShorterDiagonalIsTaken) {
-    GeometryImage image = image_of(5, open_sideband(), [](double u, double v) { return Vec3(4 * u, 4 * v, 0); });
-    const auto gluing = glue_ring(image.sideband, image.side);
-    ASSERT_TRUE(gluing.ok());
+    SquareImage image = image_of(5, open_sideband(), [](double u, double v) { return Vec3(4 * u, 4 * v, 0); });
     const uint32_t cell = 5;  // of samples 6, 7, 11, 12
     image.at(1, 1) += Vec3(0.2, 0.2, 0);
-    const auto main = split_cell(image.positions, gluing.value(), cell);
+    const auto main = split_cell(image.positions, image.gluing, cell);
     EXPECT_EQ(main[0], (Triangle{6, 7, 12}));
     EXPECT_EQ(main[1], (Triangle{6, 12, 11}));
     image.at(1, 1) -= Vec3(0.4, 0.4, 0);
-    EXPECT_EQ(split_cell(image.positions, gluing.value(), cell)[0], (Triangle{6, 7, 11}));
-    EXPECT_EQ(triangulate_grid(image.positions, gluing.value()).triangles[2 * cell], (Triangle{6, 7, 11}));
+    EXPECT_EQ(split_cell(image.positions, image.gluing, cell)[0], (Triangle{6, 7, 11}));
+    EXPECT_EQ(triangulate_grid(image.positions, image.gluing).triangles[2 * cell], (Triangle{6, 7, 11}));
 }
 
-TEST(GridSurface, ChartsMakeTheSurfaceThatReconstructionMakes) {
+TEST(GridSurface, ChartsMakeAClosedSurfaceOfOneVertexAPoint) {
     const MultiChartImage image = sphere_charts(9);
-    const auto gluing = glue_charts(image.mask, image.seams);
-    ASSERT_TRUE(gluing.ok()) << gluing.error().message;
-    const GridFaces faces = triangulate_grid(image.positions, gluing.value());
-    const auto surface = reconstruct(image);
-    ASSERT_TRUE(surface.ok());
-    ASSERT_EQ(faces.triangles.size(), surface.value().mesh.triangles.size());
+    const GridFaces faces = triangulate_grid(image.positions, image.gluing);
+    const Surface surface = surface_of(image);
+    ASSERT_EQ(faces.triangles.size(), surface.mesh.triangles.size());
     for (size_t f = 0; f < faces.triangles.size(); ++f) {
         for (size_t k = 0; k < 3; ++k) {
-            EXPECT_EQ(gluing.value().representative[faces.triangles[f][k]],
-                      surface.value().sample[surface.value().mesh.triangles[f][k]]);
+            EXPECT_EQ(image.gluing.representative[faces.triangles[f][k]], surface.sample[surface.mesh.triangles[f][k]]);
         }
-        EXPECT_EQ(split_cell(image.positions, gluing.value(), faces.slot[f] / 2)[faces.slot[f] % 2],
-                  faces.triangles[f]);
+        EXPECT_EQ(split_cell(image.positions, image.gluing, faces.slot[f] / 2)[faces.slot[f] % 2], faces.triangles[f]);
     }
-    EXPECT_TRUE(
-        analyse_topology(surface.value().mesh.triangles, surface.value().mesh.positions.size()).summary.watertight);
+    EXPECT_TRUE(topology_of(image).watertight);
 }
 
 TEST(GridSurface, CellsWithoutASampleOrWithTwoAtOnePointHaveFewerTriangles) {

@@ -9,6 +9,7 @@
 #include "corpus/generators.h"
 #include "encoder/planes/input_colors.h"
 #include "encoder/planes/sample_planes.h"
+#include "encoder/squares/square_texels.h"
 #include "encoder/surface/clean.h"
 #include "gim/decoder.hpp"
 #include "gim/encoder.h"
@@ -241,19 +242,17 @@ TEST(SamplePlanes, AThinSheetDoesNotShowItsOtherSide) {
         left = std::min(left, p.x()), right = std::max(right, p.x());
         near = std::min(near, p.z()), far = std::max(far, p.z());
     }
-    GeometryImage image;
-    image.side = 5;
+    SquareGrid grid{5, {}};
     for (uint32_t r = 0; r < 5; ++r) {
         for (uint32_t c = 0; c < 5; ++c) {
             // d/dcolumn = z, d/drow = x: z cross x = y, outwards at the top.
-            image.positions.emplace_back(left + (right - left) * (0.2 + 0.15 * r), bottom + 0.4 * (top - bottom),
-                                         near + (far - near) * (0.2 + 0.15 * c));
+            grid.positions.emplace_back(left + (right - left) * (0.2 + 0.15 * r), bottom + 0.4 * (top - bottom),
+                                        near + (far - near) * (0.2 + 0.15 * c));
         }
     }
     const AttributeSource source(plate);
-    const auto points = source.locate(image, 17);
-    ASSERT_TRUE(points.ok());
-    for (const ClosestPoint& p : points.value()) EXPECT_NEAR(p.point.y(), top, 1e-12);
+    const SquareImage image = glue_square(std::move(grid), {}).value();
+    for (const ClosestPoint& p : source.locate(square_texels(image, 17).texels)) EXPECT_NEAR(p.point.y(), top, 1e-12);
 }
 
 TEST(InputColors, TexturesRepeatAndCornersMultiply) {

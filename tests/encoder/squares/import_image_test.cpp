@@ -18,8 +18,8 @@ constexpr double kPi = 3.14159265358979323846;
 
 // A sphere folded out of the square: the ring is glued to itself along a straight cut from ring sample a to its antipode.
 // The square's inner squares become circles of latitude-like loops that close around the cut.
-GeometryImage folded_sphere(uint32_t side, uint32_t leaf) {
-    GeometryImage image;
+SquareGrid folded_sphere(uint32_t side, uint32_t leaf) {
+    SquareGrid image;
     image.side = side;
     image.positions.resize(size_t{side} * side);
     const double last = side - 1;
@@ -42,7 +42,7 @@ GeometryImage folded_sphere(uint32_t side, uint32_t leaf) {
     return image;
 }
 
-std::vector<float> planes_of(const GeometryImage& image) {
+std::vector<float> planes_of(const SquareGrid& image) {
     std::vector<float> planes;
     for (int k = 0; k < 3; ++k)
         for (const Vec3& p : image.positions) planes.push_back(static_cast<float>(p[k]));
@@ -57,8 +57,8 @@ std::vector<float> read_planes(const std::string& name, uint32_t side) {
     return planes;
 }
 
-TopologySummary decoded_topology(const GeometryImage& image) {
-    const auto bytes = write_gim({&image, 1}, {});
+TopologySummary decoded_topology(const SquareImage& image) {
+    const auto bytes = write_squares({&image, 1}, {});
     EXPECT_TRUE(bytes.ok());
     const Mesh mesh = decode_surface(bytes.value(), 0).value();
     TriangleMesh plain;
@@ -69,10 +69,10 @@ TopologySummary decoded_topology(const GeometryImage& image) {
 
 TEST(ImportImage, FoldedRingIsClosedAndMatesAreWelded) {
     for (const uint32_t leaf : {3u, 20u, 50u}) {
-        const GeometryImage folded = folded_sphere(17, leaf);
+        const SquareGrid folded = folded_sphere(17, leaf);
         const auto imported = import_image(planes_of(folded), 17, 1e-5);
         ASSERT_TRUE(imported.ok()) << imported.error().message;
-        const GeometryImage& image = imported.value();
+        const SquareImage& image = imported.value();
         ASSERT_EQ(image.sideband.paths.size(), 2u);
         EXPECT_EQ(image.sideband.paths[0].mate, 1);
         SeamTable seams;
@@ -91,7 +91,7 @@ TEST(ImportImage, FoldedRingIsClosedAndMatesAreWelded) {
 }
 
 TEST(ImportImage, NoisyMatesAreFoundWithinTheToleranceOnly) {
-    GeometryImage folded = folded_sphere(17, 20);
+    SquareGrid folded = folded_sphere(17, 20);
     for (uint32_t k = 0; k < ring_length(17); ++k) {
         const GridPoint p = ring_point(17, k);
         folded.at(p.row, p.column).x() += 1e-4 * std::sin(12.9 * k);
@@ -101,7 +101,7 @@ TEST(ImportImage, NoisyMatesAreFoundWithinTheToleranceOnly) {
 }
 
 TEST(ImportImage, OpenImageStaysOpen) {
-    GeometryImage flat;
+    SquareGrid flat;
     flat.side = 9;
     for (uint32_t r = 0; r < 9; ++r)
         for (uint32_t c = 0; c < 9; ++c) flat.positions.emplace_back(c, r, 0.1 * r * c);
@@ -112,7 +112,7 @@ TEST(ImportImage, OpenImageStaysOpen) {
 }
 
 TEST(ImportImage, PartlyGluedCylinderHasTwoLoops) {
-    GeometryImage tube;
+    SquareGrid tube;
     tube.side = 9;
     for (uint32_t r = 0; r < 9; ++r)
         for (uint32_t c = 0; c < 9; ++c) {
@@ -128,7 +128,7 @@ TEST(ImportImage, PartlyGluedCylinderHasTwoLoops) {
 }
 
 TEST(ImportImage, TorusIsFoundToBeOne) {
-    GeometryImage torus;
+    SquareGrid torus;
     torus.side = 17;
     for (uint32_t r = 0; r < 17; ++r)
         for (uint32_t c = 0; c < 17; ++c) {
@@ -142,8 +142,8 @@ TEST(ImportImage, TorusIsFoundToBeOne) {
     EXPECT_EQ(t.euler, 0);
 }
 
-double decoded_volume(const GeometryImage& image) {
-    const auto bytes = write_gim({&image, 1}, {});
+double decoded_volume(const SquareImage& image) {
+    const auto bytes = write_squares({&image, 1}, {});
     const Mesh mesh = decode_surface(bytes.value(), 0).value();
     double volume = 0;
     for (const Triangle& t : mesh.triangles)
@@ -152,8 +152,8 @@ double decoded_volume(const GeometryImage& image) {
 }
 
 TEST(ImportImage, OutsideIsOutsideWhicheverWayTheImageIsTurned) {
-    const GeometryImage folded = folded_sphere(17, 20);
-    GeometryImage turned = folded;
+    const SquareGrid folded = folded_sphere(17, 20);
+    SquareGrid turned = folded;
     for (uint32_t r = 0; r < 17; ++r)
         for (uint32_t c = 0; c < 17; ++c) turned.at(c, r) = folded.at(r, c);
     EXPECT_GT(decoded_volume(import_image(planes_of(folded), 17, 1e-5).value()), 0);
@@ -161,13 +161,13 @@ TEST(ImportImage, OutsideIsOutsideWhicheverWayTheImageIsTurned) {
 }
 
 TEST(ImportImage, OtherSidesAreResampledToTheNextGrid) {
-    GeometryImage flat;
+    SquareGrid flat;
     flat.side = 12;
     for (uint32_t r = 0; r < 12; ++r)
         for (uint32_t c = 0; c < 12; ++c) flat.positions.emplace_back(c / 11.0, r / 11.0, 0);
     const auto image = import_image(planes_of(flat), 12, 1e-6);
     ASSERT_TRUE(image.ok());
-    ASSERT_EQ(image.value().side, 17u);
+    ASSERT_EQ(image.value().side(), 17u);
     for (uint32_t r = 0; r < 17; ++r)
         for (uint32_t c = 0; c < 17; ++c)
             EXPECT_LT((image.value().at(r, c) - Vec3(c / 16.0, r / 16.0, 0)).norm(), 1e-6);
@@ -193,7 +193,7 @@ TEST(ImportImage, ASinglePointMatchesEverythingSoNothingIsGlued) {
 TEST(EncodeImage, AuthorsBunnyIsClosedWithItsFourLeavesWithinTheBytesAsked) {
     const std::vector<float> planes = read_planes("bunny-gim.gim", 257);
     if (planes.empty()) GTEST_SKIP() << "the authors' images are not here";
-    const GeometryImage image = import_image(planes, 257, 2e-6).value();
+    const SquareImage image = import_image(planes, 257, 2e-6).value();
     EXPECT_EQ(image.sideband.paths.size(), 10u);
     EncodeOptions options;
     options.rate = {RateTarget::Kind::kBytes, 6000};
@@ -209,7 +209,7 @@ TEST(EncodeImage, SphericalBunnyOfEvenSideIsClosed) {
     if (planes.empty()) GTEST_SKIP() << "the authors' images are not here";
     const auto image = import_image(planes, 256, 2e-6);
     ASSERT_TRUE(image.ok()) << image.error().message;
-    EXPECT_EQ(image.value().side, 257u);
+    EXPECT_EQ(image.value().side(), 257u);
     EXPECT_TRUE(decoded_topology(image.value()).watertight);
 }
 

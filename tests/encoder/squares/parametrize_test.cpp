@@ -61,7 +61,7 @@ TEST(Sample, EveryGridPointIsOnTheSurfaceAndMatesAreBitEqual) {
             ASSERT_NE(p.triangle, kNone) << m.name;
             for (const double w : p.barycentric) EXPECT_GT(w, -1e-6) << m.name;
         }
-        const GeometryImage image = sample_surface(boundary, uv.value(), side);
+        const SquareImage image = sample_surface(boundary, uv.value(), side).value();
         const auto ring = [&](uint32_t p) {
             const Vec2 at = ring_point(p % (4 * (side - 1)), side) * (side - 1);
             return image.at(static_cast<uint32_t>(at.y()), static_cast<uint32_t>(at.x()));

@@ -1,5 +1,5 @@
 // The whole way in the multi-chart layout: mesh -> .gim -> mesh.
-#include "encoder/charts/encode_charts.h"
+#include "encoder/charts/charts_layout.h"
 
 #include <gtest/gtest.h>
 
