@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "decoder/level_reader.h"
+#include "decoder/layout/level_reader.h"
+#include "decoder/layouts.h"
 #include "decoder/reopen.h"
 #include "gim/decoder.h"
 

@@ -1,12 +1,11 @@
 // Attribute planes of the C interface: normals and colours on grids of their own.  spec/gim-format.md, "Planes".
-#include "decoder/read_plane.h"
-
 #include <algorithm>
 #include <new>
 
-#include "decoder/level_reader.h"
+#include "decoder/layout/level_reader.h"
+#include "decoder/layouts.h"
+#include "decoder/pyramid/vector3.h"
 #include "decoder/reopen.h"
-#include "decoder/vector3.h"
 #include "format/plane_code.h"
 #include "gim/decoder.h"
 
@@ -57,13 +56,6 @@ Status decode_plane(const LevelReader& reader, const PlaneLevel& plane, uint32_t
 gim_status code(Status status) { return static_cast<gim_status>(status); }
 
 }  // namespace
-
-Status read_plane_chunk(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
-    std::span<const uint8_t> payload;
-    if (Status s = read_payload(request.file, chunk, offset, &payload); s != Status::kOk) return s;
-    plane->prefix = offset + chunk.size;
-    return parse_plane(payload, request.header, request.image, request.limits, &plane->chunk);
-}
 
 }  // namespace gim
 

@@ -28,7 +28,7 @@ void describe_input(const TriangleMesh& input, const CleanMesh& cleaned, EncodeR
 Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, const Progress& progress,
                            const Observer& observer) {
     StageClock clock(progress);
-    if (std::string c = appearance_complaint(input); !c.empty()) return Error{Stage::kInput, std::move(c)};
+    GIM_CHECK(check_appearance(input));
 
     clock.begin(Stage::kClean);
     GIM_TRY(cleaned, clean(input, {.require_connected = false}));

@@ -33,7 +33,7 @@ Result<Bytes> write_plane(Kind kind, const ImagePlane& plane, const std::string&
     return exr ? write_color_exr(plane) : write_color_png(plane);
 }
 
-Result<bool> add_planes(Kind kind, const std::string& path, const Images& images, std::vector<OutputFile>& files) {
+Result<void> add_planes(Kind kind, const std::string& path, const Images& images, std::vector<OutputFile>& files) {
     for (size_t i = 0; i < images.size(); ++i) {
         const ImagePlane& plane = kind == Kind::kNormals ? images[i].normal_map : images[i].colors;
         if (!plane.is_there()) {
@@ -46,7 +46,7 @@ Result<bool> add_planes(Kind kind, const std::string& path, const Images& images
         if (!bytes.ok()) return bytes.error();
         files.push_back({name, std::move(bytes.value())});
     }
-    return true;
+    return {};
 }
 
 // Materials image0, image1, ... with these textures, named as seen from the folder of the .mtl.
@@ -71,7 +71,7 @@ int run_decode(const DecodeCommand& command) {
     }
     for (const std::string& path : {command.output, command.normal_map, command.color_map}) {
         if (path.empty()) continue;
-        const Result<bool> writable = check_writable(path);
+        const Result<void> writable = check_writable(path);
         if (!writable.ok()) return report_error(path, writable.error());
     }
 
@@ -83,12 +83,12 @@ int run_decode(const DecodeCommand& command) {
     // Everything is made before anything is written.
     std::vector<OutputFile> files;
     if (!command.normal_map.empty()) {
-        const Result<bool> added = add_planes(Kind::kNormals, command.normal_map, images.value(), files);
+        const Result<void> added = add_planes(Kind::kNormals, command.normal_map, images.value(), files);
         if (!added.ok()) return report_error(command.input, added.error());
     }
     SurfaceOptions options{command.fused, {}};
     if (!command.color_map.empty()) {
-        const Result<bool> added = add_planes(Kind::kColors, command.color_map, images.value(), files);
+        const Result<void> added = add_planes(Kind::kColors, command.color_map, images.value(), files);
         if (!added.ok()) return report_error(command.input, added.error());
         if (*format == SurfaceFormat::kObj) {
             const std::filesystem::path mtl = std::filesystem::path(command.output).replace_extension(".mtl");
@@ -100,7 +100,7 @@ int run_decode(const DecodeCommand& command) {
     if (!bytes.ok()) return report_error(command.output, bytes.error());
     files.push_back({command.output, std::move(bytes.value())});
     for (const OutputFile& output : files) {
-        const Result<bool> written = write_file(output.path, output.bytes);
+        const Result<void> written = write_file(output.path, output.bytes);
         if (!written.ok()) return report_error(output.path, written.error());
     }
     return 0;

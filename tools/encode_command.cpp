@@ -81,10 +81,10 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("all stages", fixed(report.seconds, 2) + " s"));
 }
 
-Result<bool> write_json(const std::string& path, const std::string& text) {
+Result<void> write_json(const std::string& path, const std::string& text) {
     if (path == "-") {
         print_line(text);
-        return true;
+        return {};
     }
     const std::string line = text + "\n";
     return write_file(path, {reinterpret_cast<const uint8_t*>(line.data()), line.size()});
@@ -96,7 +96,7 @@ int run_encode(const EncodeCommand& command) {
     // Minutes of work should not end at a folder that does not exist.
     for (const std::string& path : {command.output, command.json}) {
         if (path.empty() || path == "-") continue;
-        const Result<bool> writable = check_writable(path);
+        const Result<void> writable = check_writable(path);
         if (!writable.ok()) return report_error(path, writable.error());
     }
 
@@ -108,7 +108,7 @@ int run_encode(const EncodeCommand& command) {
     StatePictures pictures(command.debug_folder);
     const bool draws = !command.debug_folder.empty();
     if (draws) {
-        const Result<bool> made = pictures.make_folder();
+        const Result<void> made = pictures.make_folder();
         if (!made.ok()) return report_error(command.debug_folder, made.error());
     }
     Result<Encoded> encoded = [&] {
@@ -117,19 +117,19 @@ int run_encode(const EncodeCommand& command) {
                             draws ? pictures.observer() : Observer());
     }();
     if (draws) {  // of a failed run too: there they are needed most
-        const Result<bool> drawn = pictures.finish();
+        const Result<void> drawn = pictures.finish();
         if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());
     }
     if (!encoded.ok()) return report_error(command.input, encoded.error());
 
-    const Result<bool> written = write_file(command.output, encoded.value().bytes);
+    const Result<void> written = write_file(command.output, encoded.value().bytes);
     if (!written.ok()) return report_error(command.output, written.error());
 
     const EncodeReport& report = encoded.value().report;
     if (!command.json.empty()) {
         nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
         document.update(to_json(report));
-        const Result<bool> reported = write_json(command.json, document.dump(2));
+        const Result<void> reported = write_json(command.json, document.dump(2));
         if (!reported.ok()) return report_error(command.json, reported.error());
     }
     if (!command.quiet && command.json != "-") print_report(command, report);

@@ -71,10 +71,10 @@ mode_t final_mode(const fs::path& target) {
     return 0666U & ~mask;
 }
 
-Result<bool> write_in_place(const fs::path& target, std::span<const uint8_t> bytes) {
+Result<void> write_in_place(const fs::path& target, std::span<const uint8_t> bytes) {
     Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (file.get() < 0 || !write_all(file.get(), bytes) || !file.close_now()) return cannot_write(reason(errno));
-    return true;
+    return {};
 }
 
 }  // namespace
@@ -102,13 +102,13 @@ Result<Bytes> read_file(const std::string& path) {
     return bytes;
 }
 
-Result<bool> check_writable(const std::string& path) {
+Result<void> check_writable(const std::string& path) {
     std::error_code error;
     const fs::path target = target_of(path);
     const fs::file_status status = fs::status(target, error);
     if (fs::is_directory(status)) return cannot_write("it is a folder");
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        return ::access(target.c_str(), W_OK) == 0 ? Result<bool>(true) : cannot_write(reason(errno));
+        return ::access(target.c_str(), W_OK) == 0 ? Result<void>() : cannot_write(reason(errno));
     }
     const fs::path folder = folder_of(target);
     if (!fs::is_directory(folder, error)) return cannot_write("there is no folder '" + folder.string() + "'");
@@ -117,10 +117,10 @@ Result<bool> check_writable(const std::string& path) {
     const Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
     if (file.get() < 0) return cannot_write(reason(errno));
     ::unlink(name.c_str());
-    return true;
+    return {};
 }
 
-Result<bool> write_file(const std::string& path, std::span<const uint8_t> bytes) {
+Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes) {
     std::error_code error;
     const fs::path target = target_of(path);
     const fs::file_status status = fs::status(target, error);
@@ -137,7 +137,7 @@ Result<bool> write_file(const std::string& path, std::span<const uint8_t> bytes)
         ::unlink(name.c_str());
         return cannot_write(reason(cause));
     }
-    return true;
+    return {};
 }
 
 std::string extension_of(const std::string& path) {

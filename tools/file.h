@@ -18,11 +18,11 @@ Result<Bytes> read_file(const std::string& path);
 
 // Tells early, before minutes of work, whether write_file can succeed: the folder exists and takes new files, and the
 // path is no folder itself. Leaves nothing behind.
-Result<bool> check_writable(const std::string& path);
+Result<void> check_writable(const std::string& path);
 
 // Writes to a temporary name in the same folder and renames, so that a failure leaves neither a partial nor a changed
 // file. A path that is no regular file (/dev/null, a pipe) is written in place. Symbolic links are followed.
-Result<bool> write_file(const std::string& path, std::span<const uint8_t> bytes);
+Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes);
 
 // Extension in lower case without the dot; empty where there is none.
 std::string extension_of(const std::string& path);

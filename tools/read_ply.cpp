@@ -329,7 +329,7 @@ class Reader {
     Reader(const Header& header, std::string_view body, Textures* textures)
         : header_(header), body_(body, header.encoding), textures_(textures) {}
 
-    std::optional<Error> read_element(const Element& element) {
+    Result<void> read_element(const Element& element) {
         const Columns columns = columns_of(element, textures_ != nullptr);
         if (columns.is_vertex) {
             soup_.positions.reserve(element.count);
@@ -345,7 +345,7 @@ class Reader {
             if (columns.is_vertex) keep_vertex(columns);
             if (columns.is_face && !header_.textures.empty() && textures_) keep_face_texture();
         }
-        return std::nullopt;
+        return {};
     }
 
     Result<TriangleMesh> mesh() && {
@@ -450,7 +450,7 @@ Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
                                             std::string(element.name.substr(0, 40)) + "', but the file holds only " +
                                             std::to_string(text.size()) + " bytes (is it cut short?)"};
         }
-        if (auto error = reader.read_element(element)) return *error;
+        if (const Result<void> read = reader.read_element(element); !read.ok()) return read.error();
     }
     return std::move(reader).mesh();
 }

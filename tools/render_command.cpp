@@ -36,7 +36,7 @@ Result<Picture> triptych(const TriangleMesh& original, const RenderCommand& comm
 
 int run_render(const RenderCommand& command) {
     if (extension_of(command.output) != "png") return report_error(command.output, {Stage::kWrite, "must end in .png"});
-    const Result<bool> writable = check_writable(command.output);
+    const Result<void> writable = check_writable(command.output);
     if (!writable.ok()) return report_error(command.output, writable.error());
     const Result<TriangleMesh> mesh = read_surface(command.input, command.gim.empty() ? command.level : 0);
     if (!mesh.ok()) return report_error(command.input, mesh.error());
@@ -52,7 +52,7 @@ int run_render(const RenderCommand& command) {
     if (!picture.ok()) return report_error(command.gim, picture.error());
     const Result<Bytes> png = write_png(picture.value());
     if (!png.ok()) return report_error(command.output, png.error());
-    const Result<bool> written = write_file(command.output, png.value());
+    const Result<void> written = write_file(command.output, png.value());
     if (!written.ok()) return report_error(command.output, written.error());
     return 0;
 }

@@ -134,9 +134,9 @@ class Table {
     explicit Table(std::string path) : path_(std::move(path)) {}
 
     // A missing file is an empty table.
-    Result<bool> read() {
+    Result<void> read() {
         const Result<Bytes> old = read_file(path_);
-        if (!old.ok()) return true;
+        if (!old.ok()) return {};
         std::istringstream lines(std::string(old.value().begin(), old.value().end()));
         std::string line;
         std::getline(lines, line);
@@ -145,17 +145,17 @@ class Table {
             const size_t after_model = line.find(',');
             rows_[line.substr(0, line.find(',', after_model + 1))] = line;
         }
-        return true;
+        return {};
     }
 
-    Result<bool> set(const std::string& model, const Setting& setting, const std::string& row) {
+    Result<void> set(const std::string& model, const Setting& setting, const std::string& row) {
         rows_[model + "," + setting.name] = row;
         return write();
     }
 
   private:
     // Models in the order above; rows of other models and settings are dropped.
-    Result<bool> write() const {
+    Result<void> write() const {
         std::string text = std::string(kHeader) + "\n";
         const auto append = [&](std::span<const char* const> models) {
             for (const std::string model : models) {
@@ -189,13 +189,13 @@ bool is_wanted(const Wanted& wanted, const std::string& model, const Setting& se
 }
 
 // One model after the other, so that a mesh is read once.
-Result<bool> measure(Table& table, const Wanted& wanted, const std::string& folder) {
-    const auto measure_model = [&](const std::string& name, bool is_scanned) -> Result<bool> {
+Result<void> measure(Table& table, const Wanted& wanted, const std::string& folder) {
+    const auto measure_model = [&](const std::string& name, bool is_scanned) -> Result<void> {
         std::vector<const Setting*> settings;
         for (const Setting& setting : kSettings) {
             if (is_wanted(wanted, name, setting)) settings.push_back(&setting);
         }
-        if (settings.empty()) return true;
+        if (settings.empty()) return {};
         const std::optional<TriangleMesh> mesh =
             is_scanned ? scanned_mesh(name, folder) : corpus::corpus().named(name).mesh();
         if (!mesh) std::fprintf(stderr, "%s: not on this machine, its rows stay\n", name.c_str());
@@ -203,25 +203,25 @@ Result<bool> measure(Table& table, const Wanted& wanted, const std::string& fold
             if (!mesh) break;
             const std::string row = measured_row(name, *setting, *mesh, wanted.side);
             std::fprintf(stderr, "%s\n", row.c_str());
-            const Result<bool> written = table.set(name, *setting, row);
+            const Result<void> written = table.set(name, *setting, row);
             if (!written.ok()) return written.error();
         }
-        return true;
+        return {};
     };
     for (const char* name : kGenerated) {
-        const Result<bool> measured = measure_model(name, false);
+        const Result<void> measured = measure_model(name, false);
         if (!measured.ok()) return measured.error();
     }
     for (const char* name : kScanned) {
-        const Result<bool> measured = measure_model(name, true);
+        const Result<void> measured = measure_model(name, true);
         if (!measured.ok()) return measured.error();
     }
-    return true;
+    return {};
 }
 
 int run(const std::string& path, const std::string& folder, const Wanted& wanted) {
     Table table(path);
-    Result<bool> done = table.read();
+    Result<void> done = table.read();
     if (done.ok()) done = measure(table, wanted, folder);
     if (done.ok()) return 0;
     std::fprintf(stderr, "gim_results: %s: %s\n", path.c_str(), done.error().message.c_str());

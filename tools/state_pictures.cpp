@@ -21,11 +21,11 @@ Panel draw(const Snapshot& state, uint32_t pixels) {
 
 }  // namespace
 
-Result<bool> StatePictures::make_folder() const {
+Result<void> StatePictures::make_folder() const {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) return Error{Stage::kWrite, "cannot make the folder: " + error.message()};
-    return true;
+    return {};
 }
 
 Observer StatePictures::observer() {
@@ -41,7 +41,7 @@ void StatePictures::add(const Snapshot& state) {
     panels_.push_back(draw(state, kStripPixels));
 }
 
-Result<bool> StatePictures::finish() {
+Result<void> StatePictures::finish() {
     if (!state_.ok() || panels_.empty()) return state_;
     const size_t count = std::min(panels_.size(), kMostInStrip);
     std::vector<Panel> chosen;
@@ -51,7 +51,7 @@ Result<bool> StatePictures::finish() {
     return save("strip.png", place_side_by_side(chosen));
 }
 
-Result<bool> StatePictures::save(const std::string& name, const Picture& picture) const {
+Result<void> StatePictures::save(const std::string& name, const Picture& picture) const {
     const Result<Bytes> png = write_png(picture);
     if (!png.ok()) return png.error();
     return write_file(folder_ + "/" + name, png.value());

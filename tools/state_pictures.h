@@ -14,19 +14,19 @@ class StatePictures {
     // `folder` is made where it is missing. Its files of earlier runs are overwritten, name by name.
     explicit StatePictures(std::string folder) : folder_(std::move(folder)) {}
 
-    Result<bool> make_folder() const;
+    Result<void> make_folder() const;
     // Draws each state to NN-name.png. The first failure is kept, later states are then left out.
     Observer observer();
     // strip.png: all states (eight of them, spread, where there are more) from left to right. The first failure of all.
-    Result<bool> finish();
+    Result<void> finish();
 
   private:
     void add(const Snapshot& state);
-    Result<bool> save(const std::string& name, const Picture& picture) const;
+    Result<void> save(const std::string& name, const Picture& picture) const;
 
     std::string folder_;
     std::vector<Panel> panels_;
-    Result<bool> state_ = true;
+    Result<void> state_;
 };
 
 }  // namespace gim

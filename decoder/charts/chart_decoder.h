@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "decoder/arena.h"
-#include "decoder/pyramid_decoder.h"
+#include "decoder/pyramid/arena.h"
+#include "decoder/pyramid/pyramid_decoder.h"
 #include "format/chart_border.h"
 #include "format/chart_table.h"
 #include "format/container.h"

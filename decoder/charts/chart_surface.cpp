@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "decoder/vector3.h"
+#include "decoder/pyramid/vector3.h"
 #include "format/chart_split.h"
 
 namespace gim {

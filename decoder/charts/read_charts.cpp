@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "decoder/charts/chart_surface.h"
-#include "decoder/read_plane.h"
 #include "format/chart_table.h"
 
 namespace gim {

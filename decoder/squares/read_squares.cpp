@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "decoder/read_plane.h"
 #include "decoder/squares/square_decoder.h"
 #include "decoder/squares/triangulate.h"
 

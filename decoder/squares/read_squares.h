@@ -1,7 +1,7 @@
 // The calls of the C interface for files of squares.
 #pragma once
 
-#include "decoder/level_reader.h"
+#include "decoder/layout/level_reader.h"
 
 namespace gim {
 

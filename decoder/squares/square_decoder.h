@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "decoder/arena.h"
-#include "decoder/plane_level.h"
-#include "decoder/pyramid_decoder.h"
+#include "decoder/layout/plane_level.h"
+#include "decoder/pyramid/arena.h"
+#include "decoder/pyramid/pyramid_decoder.h"
 #include "decoder/squares/triangulate.h"
 #include "format/container.h"
 #include "format/seam.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "decoder/vector3.h"
+#include "decoder/pyramid/vector3.h"
 #include "format/seam.h"
 
 namespace gim {

@@ -98,7 +98,7 @@ Result<void> split_at_slits(uint32_t most_samples, ChartedMesh& charted, const S
         for (const ChartMap& map : charted.atlas.maps) area += map.area;
         const std::vector<uint32_t> slit = find_slits(std::sqrt(area / (kUsualPacking * most_samples)), charted.atlas);
         if (slit.empty()) break;
-        if (auto error = charted.split(slit, clock.progress())) return error;
+        GIM_CHECK(charted.split(slit, clock.progress()));
     }
     return {};
 }

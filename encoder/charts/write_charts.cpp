@@ -15,23 +15,23 @@ namespace {
 
 Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
-// Empty when all is well.
-std::string complaint(const ChartLevels& images, const CodingParameters& p) {
-    if (images.charts.empty() || images.levels.empty()) return "no chart to write";
-    if (std::string c = bits_complaint(p.bits); !c.empty()) return c;
+// Whether the format can hold the images.
+Result<void> check(const ChartLevels& images, const CodingParameters& p) {
+    if (images.charts.empty() || images.levels.empty()) return error("no chart to write");
+    GIM_CHECK(check_bits(p.bits));
     if (images.charts.size() > kMaxCharts)
-        return std::to_string(images.charts.size()) + " charts: the format takes " + std::to_string(kMaxCharts);
+        return error(std::to_string(images.charts.size()) + " charts: the format takes " + std::to_string(kMaxCharts));
     if (images.mates.size() > kMaxChartPaths)
-        return std::to_string(images.mates.size()) + " cut-paths: the format takes " + std::to_string(kMaxChartPaths) +
-               "; ask for fewer charts";
+        return error(std::to_string(images.mates.size()) + " cut-paths: the format takes " +
+                     std::to_string(kMaxChartPaths) + "; ask for fewer charts");
     if (std::max(images.image.mask.width, images.image.mask.height) > kMaxAtlasSide)
-        return "the image is too long for the format";
+        return error("the image is too long for the format");
     for (size_t c = 0; c < images.charts.size(); ++c) {
         if (std::max(images.charts[c].columns, images.charts[c].rows) > kMaxChartSide)
-            return "chart " + std::to_string(c) + " is too long for the format; ask for more charts";
+            return error("chart " + std::to_string(c) + " is too long for the format; ask for more charts");
         for (const Vec3& position : images.positions[c]) {
             if (!is_codable(position))
-                return "chart " + std::to_string(c) + ": a position is not a finite number of reasonable size";
+                return error("chart " + std::to_string(c) + ": a position is not a finite number of reasonable size");
         }
     }
     return {};
@@ -180,7 +180,7 @@ std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) 
 }  // namespace
 
 Result<FileWriter> charts_writer(const ChartLevels& images, const CodingParameters& parameters) {
-    if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
+    GIM_CHECK(check(images, parameters));
     return FileWriter(std::make_unique<ChartCoder>(images, parameters), parameters);
 }
 

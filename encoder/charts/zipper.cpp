@@ -211,10 +211,10 @@ class Zipper {
         owner_ = owners_of(packing_);
         constexpr int kMostRounds = 10;
         for (int round = 0;; ++round) {
-            if (auto error = find_loops()) return *error;
+            GIM_CHECK(find_loops());
             node_at_.assign(charts_.size(), {});
             for (uint32_t c = 0; c < charts_.size(); ++c) {
-                if (auto error = cut_loop(c)) return *error;
+                GIM_CHECK(cut_loop(c));
             }
             number_paths();
             close_all();
@@ -236,7 +236,7 @@ class Zipper {
     }
 
     // Tells which border belongs to which chart.
-    std::optional<Error> find_loops() {
+    Result<void> find_loops() {
         loops_ = trace_borders(image_.mask);
         loop_of_chart_.assign(charts_.size(), kNone);
         for (uint32_t l = 0; l < loops_.size(); ++l) {
@@ -246,7 +246,7 @@ class Zipper {
             loop_of_chart_[c] = l;
         }
         if (loops_.size() != charts_.size()) return Error{Stage::kSample, "packed charts touch each other"};
-        return std::nullopt;
+        return {};
     }
 
     Vec2 place_of(uint32_t sample) const {
@@ -254,7 +254,7 @@ class Zipper {
         return {static_cast<double>(column), static_cast<double>(row)};
     }
 
-    std::optional<Error> cut_loop(uint32_t c) {
+    Result<void> cut_loop(uint32_t c) {
         const Chart& chart = charts_[c];
         const std::vector<uint32_t>& loop = loops_[loop_of_chart_[c]];
         std::vector<Vec2> nodes, samples;
@@ -268,7 +268,7 @@ class Zipper {
                                              " corners on a border of " + std::to_string(loop.size()) +
                                              " samples; ask for more samples or fewer charts"};
         node_at_[c] = std::move(at);
-        return std::nullopt;
+        return {};
     }
 
     // Samples of a path, both nodes included.

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "encoder/surface/compare_meshes.h"
 #include "encoder/base/result.h"
+#include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/mesh.h"
 #include "gim/decoder.hpp"
 #include "gim/encoder.h"

@@ -30,8 +30,9 @@ Pyramid<int32_t> ImageBands::quantized(size_t image, const Header& header, const
     return quantize_bands(lossy[image], detail_coding_of(header), seams).bands;
 }
 
-std::string bits_complaint(uint32_t bits) {
-    return bits < kMinBits || bits > kMaxBits ? "bits " + std::to_string(bits) + ": choose 8 to 20" : std::string();
+Result<void> check_bits(uint32_t bits) {
+    if (bits >= kMinBits && bits <= kMaxBits) return {};
+    return Error{Stage::kWrite, "bits " + std::to_string(bits) + ": choose 8 to 20"};
 }
 
 bool is_codable(const Vec3& position) {

@@ -65,8 +65,8 @@ struct ImageBands {
     Pyramid<int32_t> quantized(size_t image, const Header& header, const SeamTable* seams = nullptr) const;
 };
 
-// Empty when the format takes so many bits.
-std::string bits_complaint(uint32_t bits);
+// An Error unless the format takes so many bits.
+Result<void> check_bits(uint32_t bits);
 // Whether the format can hold a position.
 bool is_codable(const Vec3& position);
 

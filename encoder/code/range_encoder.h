@@ -1,4 +1,4 @@
-// Binary range encoder and raw bits of one stream: the mirror of decoder/range_decoder.h.  spec/gim-format.md, "Range
+// Binary range encoder and raw bits of one stream: the mirror of decoder/pyramid/range_decoder.h.  spec/gim-format.md, "Range
 // coder".
 #pragma once
 

@@ -1,4 +1,4 @@
-// Image -> wavelet bands: the mirror of decoder/synthesis.h.  spec/gim-format.md, "Wavelets".
+// Image -> wavelet bands: the mirror of decoder/pyramid/synthesis.h.  spec/gim-format.md, "Wavelets".
 // In:  rows*columns interleaved triples, integers (reversible 5/3) or floats in units (9/7).
 // Out: all bands down to the base. Cost O(samples). Deterministic.
 #pragma once
@@ -44,7 +44,7 @@ Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> 
     return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)), seams);
 }
 
-// The image again. The decoder has the inverse that counts (decoder/synthesis.h); this one takes bands as analyse gives them.
+// The image again. The decoder has the inverse that counts (decoder/pyramid/synthesis.h); this one takes bands as analyse gives them.
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid,
                                               const SeamTable* seams = nullptr);

@@ -51,7 +51,7 @@ Schedule schedule_of(const FitOptions& options) {
     return schedule;
 }
 
-std::optional<Error> check_input(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held) {
+Result<void> check_input(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held) {
     const auto fail = [](const char* message) { return Error{Stage::kFit, message}; };
     if (image.width() < 3 || image.height() < 3 || image.positions.size() != image.gluing.sample_count())
         return fail("the image is not a rectangle of samples");
@@ -61,7 +61,7 @@ std::optional<Error> check_input(const GeometryImage& image, const Mesh& referen
     for (const Vec3& p : image.positions) {
         if (!p.allFinite()) return fail("the image has samples that are not finite");
     }
-    return std::nullopt;
+    return {};
 }
 
 bool no_worse(const FitQuality& after, const FitQuality& before) {
@@ -151,7 +151,7 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
 
 Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,
                    const Progress& progress) {
-    if (auto bad = check_input(start, reference, options.held)) return *std::move(bad);
+    GIM_CHECK(check_input(start, reference, options.held));
     Fitted result;
     with_threads(options.threads, [&] { result = fit_in_arena(start, reference, options, progress); });
     return result;
@@ -159,7 +159,7 @@ Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitO
 
 Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference, const std::vector<bool>& held,
                                uint32_t threads) {
-    if (auto bad = check_input(image, reference, held)) return *std::move(bad);
+    GIM_CHECK(check_input(image, reference, held));
     FitQuality quality;
     with_threads(threads, [&] {
         const FitFrame frame(reference);

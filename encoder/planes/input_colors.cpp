@@ -58,19 +58,20 @@ float times(float level, float factor) {
 
 }  // namespace
 
-std::string appearance_complaint(const TriangleMesh& mesh) {
+Result<void> check_appearance(const TriangleMesh& mesh) {
+    const auto bad = [](const char* what) { return Error{Stage::kInput, what}; };
     const Appearance& a = mesh.appearance;
     const size_t faces = mesh.triangles.size();
     const auto fits = [&](size_t size) { return size == 0 || size == faces; };
     if (!fits(a.corner_colors.size()) || !fits(a.corner_texcoords.size()) || !fits(a.triangle_texture.size()))
-        return "the mesh's colours must have one entry per triangle, or none at all";
+        return bad("the mesh's colours must have one entry per triangle, or none at all");
     for (const TextureImage& image : a.textures) {
         if (image.width == 0 || image.height == 0 || image.rgb.size() != size_t{image.width} * image.height * 3)
-            return "a texture's bytes do not fit its size";
+            return bad("a texture's bytes do not fit its size");
     }
     for (const uint32_t t : a.triangle_texture) {
         if (t != UINT32_MAX && (t >= a.textures.size() || a.corner_texcoords.empty()))
-            return "a triangle has a texture that is not there, or no texture coordinates";
+            return bad("a triangle has a texture that is not there, or no texture coordinates");
     }
     return {};
 }

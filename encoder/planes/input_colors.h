@@ -12,8 +12,8 @@
 
 namespace gim {
 
-// Empty when the arrays fit the mesh and each other.
-std::string appearance_complaint(const TriangleMesh& mesh);
+// An Error unless the arrays fit the mesh and each other.
+Result<void> check_appearance(const TriangleMesh& mesh);
 
 class InputColors {
   public:

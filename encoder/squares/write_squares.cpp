@@ -18,32 +18,35 @@ Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
 std::string image_name(size_t i) { return "image " + std::to_string(i); }
 
-// Empty when all is well.
-std::string complaint(std::span<const SquareImage> images, const CodingParameters& p) {
-    if (images.empty()) return "no image to write";
-    if (images.size() > kMaxImages) return std::to_string(images.size()) + " images: a file holds at most 65536";
-    if (std::string c = bits_complaint(p.bits); !c.empty()) return c;
+// Whether the format can hold the images.
+Result<void> check(std::span<const SquareImage> images, const CodingParameters& p) {
+    if (images.empty()) return error("no image to write");
+    if (images.size() > kMaxImages) return error(std::to_string(images.size()) + " images: a file holds at most 65536");
+    GIM_CHECK(check_bits(p.bits));
     for (size_t i = 0; i < images.size(); ++i) {
         const SquareImage& image = images[i];
         if (!is_grid_side(image.side()) || image.side() < 3)
-            return image_name(i) + " has side " + std::to_string(image.side()) + ": it must be 2^j+1, 3 to 16385";
+            return error(image_name(i) + " has side " + std::to_string(image.side()) +
+                         ": it must be 2^j+1, 3 to 16385");
         if (image.positions.size() != size_t{image.side()} * image.side())
-            return image_name(i) + " has " + std::to_string(image.positions.size()) + " positions, not side*side";
+            return error(image_name(i) + " has " + std::to_string(image.positions.size()) +
+                         " positions, not side*side");
         for (size_t s = 0; s < image.positions.size(); ++s) {
             if (!is_codable(image.positions[s]))
-                return image_name(i) + ", row " + std::to_string(s / image.side()) + ", column " +
-                       std::to_string(s % image.side()) + ": position is not a finite number of reasonable size";
+                return error(image_name(i) + ", row " + std::to_string(s / image.side()) + ", column " +
+                             std::to_string(s % image.side()) + ": position is not a finite number of reasonable size");
         }
         SeamTable seams;
         if (image.sideband.paths.size() > kMaxCutPaths)
-            return image_name(i) + " has " + std::to_string(image.sideband.paths.size()) +
-                   " cut-paths, the format takes " + std::to_string(kMaxCutPaths);
+            return error(image_name(i) + " has " + std::to_string(image.sideband.paths.size()) +
+                         " cut-paths, the format takes " + std::to_string(kMaxCutPaths));
         if (build_seam_table(image.sideband, &seams) != Status::kOk)
-            return image_name(i) +
-                   ": the sideband is inconsistent (lengths must fill the ring, mates be mutual and equally long)";
+            return error(
+                image_name(i) +
+                ": the sideband is inconsistent (lengths must fill the ring, mates be mutual and equally long)");
         if (!level_is_closed(seams, image.side()))
-            return image_name(i) +
-                   ": glued as its sideband says, its samples are not a manifold mesh; use a larger side";
+            return error(image_name(i) +
+                         ": glued as its sideband says, its samples are not a manifold mesh; use a larger side");
     }
     return {};
 }
@@ -161,7 +164,7 @@ Units units_of(std::span<const SquareImage> images, uint32_t bits) {
 }
 
 Result<FileWriter> squares_writer(std::span<const SquareImage> images, const CodingParameters& parameters) {
-    if (std::string c = complaint(images, parameters); !c.empty()) return error(std::move(c));
+    GIM_CHECK(check(images, parameters));
     return FileWriter(std::make_unique<SquareCoder>(images, parameters), parameters);
 }
 

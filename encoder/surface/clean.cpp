@@ -4,6 +4,7 @@
 // Order: check the numbers; drop degenerate and duplicate triangles; weld boundary edges that lie exactly on each
 // other; orient; drop unreferenced vertices; check that the result is what was promised, and if not, say where.
 #include "encoder/surface/clean.h"
+#include "encoder/base/result.h"
 
 #include <algorithm>
 #include <array>
@@ -38,7 +39,7 @@ std::string text_of(const Point& p) {
 // ---- numbers
 // ---------------------------------------------------------------------------------------------------------
 
-std::optional<Error> check_numbers(const TriangleMesh& input) {
+Result<void> check_numbers(const TriangleMesh& input) {
     if (input.triangles.empty()) return error("the mesh has no triangles; is the file a point cloud, or empty?");
     if (input.positions.size() >= kNone / 4 || input.triangles.size() >= kNone / 4) {
         return error("the mesh is too large: " + std::to_string(input.triangles.size()) +
@@ -72,7 +73,7 @@ std::optional<Error> check_numbers(const TriangleMesh& input) {
                      std::to_string(t[0]) + ", " + std::to_string(t[1]) + ", " + std::to_string(t[2]) +
                      ") of a mesh of " + std::to_string(input.positions.size()) + " vertices; the file is damaged");
     }
-    return std::nullopt;
+    return {};
 }
 
 // ---- degenerate and duplicate triangles
@@ -370,7 +371,7 @@ CleanMesh compact(const std::vector<Point>& positions, const std::vector<Triangl
 }  // namespace
 
 Result<CleanMesh> clean(const TriangleMesh& input, const CleanOptions& options) {
-    if (auto bad = check_numbers(input)) return *std::move(bad);
+    GIM_CHECK(check_numbers(input));
     const std::vector<Point>& positions = input.positions;
 
     std::vector<Triangle> triangles = input.triangles;

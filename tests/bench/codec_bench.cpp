@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "decoder/range_decoder.h"
-#include "decoder/synthesis.h"
+#include "decoder/pyramid/range_decoder.h"
+#include "decoder/pyramid/synthesis.h"
 #include "encoder/code/code_bands.h"
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/write_squares.h"

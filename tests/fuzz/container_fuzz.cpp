@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "decoder/range_decoder.h"
+#include "decoder/pyramid/range_decoder.h"
 #include "format/chart_border.h"
 #include "format/chart_table.h"
 #include "format/checksum.h"

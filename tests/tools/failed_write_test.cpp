@@ -39,7 +39,7 @@ class FileSizeLimit {
     bool holds_ = false;
 };
 
-Result<bool> write_beyond_the_limit(const std::string& path) {
+Result<void> write_beyond_the_limit(const std::string& path) {
     const FileSizeLimit limit(1000);
     EXPECT_TRUE(limit.holds());
     return write_file(path, Bytes(5000, 'n'));
@@ -48,7 +48,7 @@ Result<bool> write_beyond_the_limit(const std::string& path) {
 TEST(FailedWrite, KeepsTheOldFileAndLeavesNothingElse) {
     const TemporaryFolder folder;
     save(folder.file("a.bin"), "old");
-    const Result<bool> written = write_beyond_the_limit(folder.file("a.bin"));
+    const Result<void> written = write_beyond_the_limit(folder.file("a.bin"));
     ASSERT_FALSE(written.ok());
     EXPECT_EQ(written.error().stage, Stage::kWrite);
     EXPECT_EQ(written.error().message.find("cannot write: "), 0U) << written.error().message;

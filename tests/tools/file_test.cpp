@@ -42,7 +42,7 @@ TEST(File, WritingKeepsThePermissionsOfTheOldFileAndFollowsLinks) {
 TEST(File, MissingFoldersAndFoldersInTheWayAreRefused) {
     const TemporaryFolder folder;
     for (const std::string& path : {folder.file("no/such/a.bin"), folder.path()}) {
-        const Result<bool> writable = check_writable(path);
+        const Result<void> writable = check_writable(path);
         ASSERT_FALSE(writable.ok());
         EXPECT_EQ(writable.error().message.find("cannot write: "), 0U) << writable.error().message;
         EXPECT_FALSE(write_file(path, to_bytes("x")).ok());

@@ -58,7 +58,7 @@ void simplify(Surface& surface, size_t edges) {
 }
 
 // Whole or not at all: run.py takes a file that is there for complete.
-gim::Result<bool> write_off(const std::string& path, Surface surface) {
+gim::Result<void> write_off(const std::string& path, Surface surface) {
     surface.collect_garbage();
     std::string text = "OFF\n" + std::to_string(surface.number_of_vertices()) + ' ' +
                        std::to_string(surface.number_of_faces()) + " 0\n";
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
         simplify(surface, static_cast<size_t>(ratio * edges));
         char name[32];
         std::snprintf(name, sizeof(name), "%g.off", ratio);
-        const gim::Result<bool> written = write_off(prefix + name, surface);
+        const gim::Result<void> written = write_off(prefix + name, surface);
         if (!written.ok()) return fail(prefix + name, written.error().message);
     }
     return 0;

@@ -34,7 +34,7 @@ Result<RivalMesh> read_rival_mesh(const std::string& path) {
     return mesh;
 }
 
-Result<bool> write_mesh(const std::string& path, const RivalMesh& mesh) {
+Result<void> write_mesh(const std::string& path, const RivalMesh& mesh) {
     DecodedImage image;
     for (const auto& p : mesh.positions) image.positions.insert(image.positions.end(), p.begin(), p.end());
     for (const auto& t : mesh.triangles) image.triangles.insert(image.triangles.end(), t.begin(), t.end());
@@ -62,7 +62,7 @@ int simplify(const Command& c) {
     for (const double ratio : c.ratios) {
         char path[32];
         std::snprintf(path, sizeof(path), "%g.off", ratio);
-        const Result<bool> written = write_mesh(c.output + path, simplify_quadric(mesh.value(), ratio));
+        const Result<void> written = write_mesh(c.output + path, simplify_quadric(mesh.value(), ratio));
         if (!written.ok()) return fail(c.output + path, written.error().message);
     }
     return 0;
@@ -73,7 +73,7 @@ int encode_with(const Command& c, Result<Bytes> (*encode)(const RivalMesh&, int)
     if (!mesh.ok()) return fail(c.input, mesh.error().message);
     const Result<Bytes> bytes = encode(mesh.value(), c.bits);
     if (!bytes.ok()) return fail(c.input, bytes.error().message);
-    const Result<bool> written = write_file(c.output, bytes.value());
+    const Result<void> written = write_file(c.output, bytes.value());
     return written.ok() ? 0 : fail(c.output, written.error().message);
 }
 
@@ -82,7 +82,7 @@ int decode(const Command& c) {
     if (!bytes.ok()) return fail(c.input, bytes.error().message);
     const auto decoder = decoder_of(bytes.value());
     if (!decoder || !decoder->run()) return fail(c.input, "not a file that decodes");
-    const Result<bool> written = write_mesh(c.output, decoder->mesh());
+    const Result<void> written = write_mesh(c.output, decoder->mesh());
     return written.ok() ? 0 : fail(c.output, written.error().message);
 }
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "decoder/range_decoder.h"
+#include "decoder/pyramid/range_decoder.h"
 #include "encoder/code/range_encoder.h"
 #include "format/chart_table.h"
 #include "tests/format/random_sideband.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "decoder/synthesis.h"
+#include "decoder/pyramid/synthesis.h"
 #include "tests/format/random_sideband.h"
 
 namespace gim {

@@ -1,4 +1,4 @@
-#include "decoder/range_decoder.h"
+#include "decoder/pyramid/range_decoder.h"
 
 #include <gtest/gtest.h>
 

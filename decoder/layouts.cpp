@@ -1,4 +1,4 @@
-#include "decoder/level_reader.h"
+#include "decoder/layouts.h"
 
 #include "decoder/charts/read_charts.h"
 #include "decoder/squares/read_squares.h"

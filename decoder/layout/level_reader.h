@@ -1,5 +1,4 @@
-// What the decoder asks of a layout: a table of functions for each. Adding a layout adds a folder and a row of the
-// table.
+// What the decoder asks of a layout: one struct of functions for each. layouts.h has the table.
 #pragma once
 
 #include <array>
@@ -7,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "decoder/plane_level.h"
+#include "decoder/layout/plane_level.h"
 #include "format/container.h"
 #include "gim/decoder.h"
 
@@ -62,6 +61,7 @@ struct LevelReader {
     void (*close_plane)(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
 };
 
-const LevelReader& reader_of(FileLayout layout);
+// Checks the chunk of a plane and fills plane->chunk and plane->prefix.
+Status read_plane_chunk(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-#include "decoder/pyramid_decoder.h"
+#include "decoder/pyramid/pyramid_decoder.h"
 
 namespace gim {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "decoder/arena.h"
-#include "decoder/pyramid_decoder.h"
+#include "decoder/pyramid/arena.h"
+#include "decoder/pyramid/pyramid_decoder.h"
 #include "format/fuse.h"
 #include "format/plane_code.h"
 #include "format/seam.h"

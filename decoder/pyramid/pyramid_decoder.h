@@ -8,9 +8,9 @@
 #include <span>
 #include <type_traits>
 
-#include "decoder/arena.h"
-#include "decoder/range_decoder.h"
-#include "decoder/synthesis.h"
+#include "decoder/pyramid/arena.h"
+#include "decoder/pyramid/range_decoder.h"
+#include "decoder/pyramid/synthesis.h"
 #include "format/status.h"
 
 namespace gim {

@@ -1,4 +1,4 @@
-#include "decoder/synthesis.h"
+#include "decoder/pyramid/synthesis.h"
 
 #include <algorithm>
 #include <cstring>
