@@ -26,7 +26,7 @@ TEST(CellPoint, WeightsGiveBackThePointInsideItsTriangle) {
                 EXPECT_NEAR(at_row, row, 1e-12);
                 EXPECT_NEAR(at_column, column, 1e-12);
                 // One corner is not of the triangle: an end of the other diagonal.
-                EXPECT_EQ(main ? std::min(w[1], w[2]) : std::min(w[0], w[3]), 0);
+                EXPECT_NEAR(main ? std::min(w[1], w[2]) : std::min(w[0], w[3]), 0, 1e-12);
             }
         }
     }

@@ -38,6 +38,12 @@ TEST(ShadingNormals, PositiveAndNegativeZeroAreOnePosition) {
     EXPECT_NE(normals[1], normals[5]);
 }
 
+TEST(ShadingNormals, LargeTrianglesCountForMore) {
+    // At the origin a triangle of area 1 that looks along z meets one of area 3 that looks along x.
+    const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}, {{0, 1, 2}, {0, 2, 3}}};
+    EXPECT_LT((shading_normals(mesh)[0] - Vec3(3, 0, 1).normalized()).norm(), 1e-12);
+}
+
 TEST(ShadingNormals, InsideATriangleTheyAreInterpolatedAndOfUnitLength) {
     const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     const std::vector<Vec3> normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
