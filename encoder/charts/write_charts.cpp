@@ -15,7 +15,7 @@ namespace {
 
 Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
-// Empty when all is well.
+// Says what does not fit the format. Empty if all is well.
 std::string complaint(const ChartLevels& images, const CodingParameters& p) {
     if (images.charts.empty() || images.levels.empty()) return "no chart to write";
     if (std::string c = bits_complaint(p.bits); !c.empty()) return c;
@@ -37,7 +37,7 @@ std::string complaint(const ChartLevels& images, const CodingParameters& p) {
     return {};
 }
 
-// The positions of the defined samples: undefined ones do not count for the bounding box.
+// Returns the positions of the defined samples. Undefined samples do not count for the bounding box.
 std::vector<Vec3> defined_positions(const ChartLevels& images) {
     std::vector<Vec3> positions;
     for (size_t c = 0; c < images.charts.size(); ++c) {
@@ -48,7 +48,7 @@ std::vector<Vec3> defined_positions(const ChartLevels& images) {
     return positions;
 }
 
-// Base values relative to the one before.
+// Makes each base value relative to the one before.
 void chain_base(Pyramid<int32_t>* pyramid) {
     for (size_t i = pyramid->base.size(); i-- > 3;) pyramid->base[i] -= pyramid->base[i - 3];
 }
@@ -69,7 +69,7 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
                   const std::vector<uint32_t>& mates, LevelBorders borders, uint32_t level) {
     std::vector<BorderPath> paths(mates.size());
     for (size_t p = 0; p < paths.size(); ++p) paths[p] = {mates[p], borders.lengths[p], 0, 0};
-    std::vector<size_t> zipper_of(mates.size(), 0);  // of the path with the lower number
+    std::vector<size_t> zipper_of(mates.size(), 0);  // set for the mate with the lower number
     for (size_t p = 0, next = 0; p < mates.size(); ++p) {
         if (mates[p] != kUnmated && mates[p] > p) zipper_of[p] = next++;
     }
@@ -113,7 +113,7 @@ Header header_of(const ChartLevels& images, const CodingParameters& parameters) 
     return header;
 }
 
-// The charts' part of a file.
+// Codes the charts' part of a file.
 class ChartCoder final : public LevelCoder {
   public:
     ChartCoder(const ChartLevels& images, const CodingParameters& parameters)
