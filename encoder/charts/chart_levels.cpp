@@ -18,7 +18,8 @@ namespace {
 // coarsest levels would make boxes far larger than their charts.
 constexpr uint64_t kMostBoxes = 4;
 
-// The origin of a box's lattice. At level L, sample (column, row) is the rectangle's point (column, row) * 2^L + origin.
+// The origin of a box's lattice. At level L its sample (column, row) is point (column, row) * 2^L + origin of the
+// rectangle.
 struct Lattice {
     int64_t column = 0, row = 0;
 };

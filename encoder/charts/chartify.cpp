@@ -68,8 +68,8 @@ class Partition {
         for_each_outgoing(graph_->topology, vertex, [&](uint32_t h) { found |= label_[face_of(h)] == chart; });
         return found;
     }
-    // Returns whether the chart stays a disk with f. They must meet in one arc: one edge and not the opposite corner, or
-    // two edges.
+    // Returns whether the chart stays a disk with f. They must meet in one arc: one edge and not the opposite corner,
+    // or two edges.
     bool can_join(uint32_t f, uint32_t chart) const {
         int shared = 0;
         uint32_t shared_edge = 0;
@@ -137,7 +137,7 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
                 refused.push_back(entry.face);
             }
         }
-        // A face that is left lies in a component without a seed, or would close a chart up. The first one becomes a seed.
+        // A face that is left lies in a component without a seed or closes a chart up. The first one becomes a seed.
         while (next_refused < refused.size() && partition[refused[next_refused]] != kNone) ++next_refused;
         uint32_t seed = next_refused < refused.size() ? refused[next_refused] : kNone;
         if (seed == kNone) {
@@ -189,11 +189,11 @@ std::vector<uint32_t> interior_seeds(const DualGraph& graph, const Partition& pa
     return seeds;
 }
 
-// Adds up to `wanted` seeds while bootstrapping. Takes the farthest face of each chart that ran farthest from its seed. So
-// new seeds are far from every seed and spread out.
+// Adds up to `wanted` seeds while bootstrapping. Takes the farthest face of each of the charts that ran farthest, so new
+// seeds are far from every seed and spread out.
 void add_far_seeds(const DualGraph& graph, const Growth& growth, uint32_t wanted, std::vector<uint32_t>& seeds) {
-    // Growth does not keep the cost to reach a face. Distance from the chart's seed serves as well and is cheap. Planarity
-    // is a little above 1, so that flat charts are split too if no others are left.
+    // Growth does not keep the cost to reach a face. Distance from the chart's seed serves as well and is cheap.
+    // Planarity is a little above 1, so that flat charts are split too if no others are left.
     constexpr double kPlanarity = 1.001;
     const auto count = static_cast<uint32_t>(growth.seeds.size());
     std::vector<double> spread(count, 0);
@@ -277,8 +277,8 @@ uint32_t renumber(std::vector<uint32_t>& labels) {
     return count;
 }
 
-// Returns whether two disks make one. They do if they meet in a single arc and at no vertex apart from it: then the Euler
-// characteristic 1 + 1 - (common vertices - common edges) is 1.
+// Returns whether two disks make one. They do if they meet in a single arc and at no vertex apart from it: then the
+// Euler characteristic 1 + 1 - (common vertices - common edges) is 1.
 bool meet_in_one_arc(const DualGraph& graph, const Partition& partition, const std::vector<uint32_t>& faces_of_a,
                      uint32_t a, uint32_t b) {
     std::set<uint32_t> common_vertices;

@@ -113,8 +113,8 @@ Result<MultiChartImage> sample_and_zip(const ChartedMesh& charted, uint32_t thre
     return zip(sample_charts(charts, maps, packing, threads), charts, maps, packing);
 }
 
-// Packs until the charts have no inlets and the seams close without bridges. Splits charts that do not fit before the next
-// attempt. If seams do not close, takes another seed, so that samples fall elsewhere in the next packing.
+// Packs until the charts have no inlets and the seams close without bridges. Splits charts that do not fit before the
+// next attempt. If seams do not close, takes another seed, so that samples fall elsewhere in the next packing.
 Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh charted, StageClock& clock) {
     PackOptions pack_options;
     pack_options.most_samples = options.samples;

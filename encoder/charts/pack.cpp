@@ -19,8 +19,8 @@ namespace gim {
 
 namespace {
 
-// A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set if any of the 2^k samples from x on is
-// taken or next to a taken one.
+// A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set if any of the 2^k samples from x on
+// is taken or next to a taken one.
 class Strip {
   public:
     Strip(uint32_t width, uint32_t height)
@@ -104,8 +104,8 @@ class Strip {
     std::vector<uint64_t> bits_;
 };
 
-// Says how to make one packing: the strip's width, the order of the charts, and what "low" means for each. 1: its top edge
-// is lowest. 0: its centre of gravity is lowest.
+// Says how to make one packing: the strip's width, the order of the charts, and what "low" means for each. 1: its top
+// edge is lowest. 0: its centre of gravity is lowest.
 struct Recipe {
     uint32_t width = 0;
     std::vector<uint32_t> order;
@@ -212,15 +212,15 @@ class Packer {
         return static_cast<uint32_t>(random_ % count);
     }
 
-    // Returns the side of a coarse cell: large enough to try all places quickly, small enough to tell good from bad ones.
+    // Returns the side of a coarse cell: coarse enough to try all places quickly, fine enough to tell good from bad.
     static uint32_t coarse_cell(double samples) {
         constexpr double kFewestCells = 64;
         uint32_t cell = 2;
         while (cell < 16 && 4.0 * cell * cell * kFewestCells < samples) cell *= 2;
         return cell;
     }
-    // Rasterizes chart c in all orientations. If `angle` is given, tries the few about it first. If no orientation can be
-    // used, the chart grows by itself. Empty if that does not help.
+    // Rasterizes chart c in all orientations. If `angle` is given, tries the few about it first. If no orientation can
+    // be used, the chart grows by itself. Empty if that does not help.
     Shape rasterize(uint32_t c, double scale, const double* angle) const {
         // A border that is too short grows with the chart. An inlet may or may not open.
         constexpr int kMostGrowths = 40, kMostGrowthsOfNoDisk = 6;

@@ -76,8 +76,8 @@ Walks walks_of(const SeamRecord& seams, const std::vector<std::vector<uint32_t>>
     return walks;
 }
 
-// Merges the points of a piece of a border. Drops all but one of the `length` advances from the i-th on. One stays on the
-// seam with the fewest. Returns false if a seam would be left without a step of kBoth.
+// Merges the points of a piece of a border: of `length` advances from the i-th on, it drops all but one, on the seam
+// with the fewest. Returns false if a seam would be left without a step of kBoth.
 bool merge_piece(const std::vector<Advance>& around, size_t i, size_t length, const SeamRecord& seams, Drops& drops) {
     const auto at = [&](size_t k) -> const Advance& { return around[(i + k) % around.size()]; };
     const auto room = [&](size_t k) {
@@ -100,8 +100,8 @@ bool merge_piece(const std::vector<Advance>& around, size_t i, size_t length, co
     return true;
 }
 
-// Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. Returns false
-// if there is no such piece.
+// Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. Returns
+// false if there is no such piece.
 bool flatten(uint32_t a, uint32_t b, const Walks& walks, const SeamRecord& seams, Drops& drops) {
     constexpr size_t kLongestPiece = 6;
     for (const std::vector<Advance>& around : walks) {
@@ -132,9 +132,9 @@ std::vector<uint32_t> first_of_each(const std::vector<std::vector<uint32_t>>& lo
     return found;
 }
 
-// Finds tips of single triangles over a doubled edge: without such a tip, the edge is a border edge on that side. Returns
-// one per chart at a time, because two that touch must not both go. If there are none, returns ends of doubled edges that
-// run across a chart.
+// Finds tips of single triangles over a doubled edge: without such a tip, the edge is a border edge on that side.
+// Returns one per chart at a time, because two that touch must not both go. If there are none, returns ends of doubled
+// edges that run across a chart.
 std::vector<uint32_t> find_spikes(const MultiChartImage& image, const Edges& doubled,
                                   const std::vector<uint32_t>& point) {
     using Loop = std::vector<uint32_t>;

@@ -84,8 +84,8 @@ class Straightener {
         return paths;
     }
 
-    // Returns whether a path still lies between its charts. If a neighbour's change has moved them, it waits for the next
-    // pass.
+    // Returns whether a path still lies between a and b. A neighbour's change may have moved them since the pass began;
+    // then the path waits for the next pass.
     bool is_current(const std::vector<uint32_t>& path, uint32_t a, uint32_t b) const {
         return std::all_of(path.begin(), path.end(), [&](uint32_t h) {
             return label_[face_of(h)] == a && label_[face_of(topology_.twin[h])] == b;
@@ -173,7 +173,7 @@ class Straightener {
         relabel(path, better, a, b);
     }
 
-    // Gives the faces of both charts on the left of the new path to a, the others to b. Undoes it if that breaks a disk.
+    // Gives the faces of both charts on the left of the new path to a, the others to b. Undoes it if a disk breaks.
     void relabel(const std::vector<uint32_t>& old_path, const std::vector<uint32_t>& path, uint32_t a, uint32_t b) {
         std::vector<uint32_t> both = faces_[a];
         both.insert(both.end(), faces_[b].begin(), faces_[b].end());
@@ -229,8 +229,8 @@ class Straightener {
         for (const uint32_t h : old_path) wall_[h] = wall_[topology_.twin[h]] = 0;
     }
 
-    // Returns whether the faces make a disk, even if they may be unconnected: Euler characteristic 1, one border loop, every
-    // vertex in a single fan.
+    // Returns whether the faces make a disk: Euler characteristic 1, one border loop, every vertex in a single fan. They
+    // need not be connected.
     bool is_disk(const std::vector<uint32_t>& faces, uint32_t chart) {
         int64_t euler = static_cast<int64_t>(faces.size());
         int64_t border = 0;

@@ -15,8 +15,8 @@ namespace gim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Cost of a point's first further sample, in squared mean spacings. The second costs three times as much, the third five
-// times, and so on.
+// Cost of a point's first further sample, in squared mean spacings. The second costs three times as much, the third
+// five times, and so on.
 constexpr double kSingleStep = 0.5;
 // Least distance between unified points along a path, in mean spacings.
 constexpr double kLeastSpacing = 0.3;
@@ -70,9 +70,9 @@ Vec3 point_at(const Curve& curve, double part) {
 
 // ---- cut-nodes ----------------------------------------------------------------------------------------------------
 
-// Finds a sample for each node and returns its index in the loop. Samples keep the order of the nodes, lie at least `gap`
-// apart, and have the least sum of squared distances. Indices count on past the loop's end: all lie within one turn after
-// the first. Empty if the loop is too short.
+// Finds a sample for each node and returns its index in the loop. Samples keep the order of the nodes, lie at least
+// `gap` apart, and have the least sum of squared distances. Indices count on past the loop's end: all lie within one
+// turn after the first. Empty if the loop is too short.
 std::vector<uint32_t> place_nodes(const std::vector<Vec2>& nodes, const std::vector<Vec2>& loop, uint32_t gap) {
     const auto count = static_cast<uint32_t>(nodes.size()), length = static_cast<uint32_t>(loop.size());
     if (uint64_t{count} * gap > length) return {};
