@@ -189,8 +189,8 @@ std::vector<uint32_t> interior_seeds(const DualGraph& graph, const Partition& pa
     return seeds;
 }
 
-// Adds up to `wanted` seeds while bootstrapping. Takes the farthest face of each of the charts that ran farthest, so new
-// seeds are far from every seed and spread out.
+// Adds up to `wanted` seeds while bootstrapping. Takes the farthest face of each of the charts that ran farthest, so
+// new seeds are far from every seed and spread out.
 void add_far_seeds(const DualGraph& graph, const Growth& growth, uint32_t wanted, std::vector<uint32_t>& seeds) {
     // Growth does not keep the cost to reach a face. Distance from the chart's seed serves as well and is cheap.
     // Planarity is a little above 1, so that flat charts are split too if no others are left.

@@ -101,7 +101,7 @@ class Shares {
         return std::min(gap, p.length - gap) > kDetour * apart + kSlack;
     }
 
-    // Makes one of two neighbours gutter if they belong to different charts or banks. Between banks, diagonals count too.
+    // Makes one of two neighbours gutter if they belong to different charts or banks. Diagonals only count for banks.
     void raise_walls() {
         for (int64_t row = 0; row < height_; ++row) {
             for (int64_t column = 0; column < width_; ++column) {

@@ -4,7 +4,7 @@
 // rectangle is what counts, and empty samples do not help it. A map a little larger than its optimum, or bent a little,
 // loses in second order only. So every chart gets a territory: the samples nearest to it, with a gutter to other
 // territories and between the banks of its own inlets. Its map is relaxed there. It presses outwards until the
-// territory's wall or its own stretch stops it. If the new map makes no disk there, it is taken back by parts.
+// territory's wall or its own stretch stops it. If the new map makes no disk there, it is taken back step by step.
 //
 // In:  charts, their maps and where they are packed. Out: new maps and masks; poses and the rectangle stay.
 // Cost: about ten sparse factorizations per chart and round. Deterministic at any thread count.

@@ -229,8 +229,8 @@ class Straightener {
         for (const uint32_t h : old_path) wall_[h] = wall_[topology_.twin[h]] = 0;
     }
 
-    // Returns whether the faces make a disk: Euler characteristic 1, one border loop, every vertex in a single fan. They
-    // need not be connected.
+    // Returns whether the faces make a disk: Euler characteristic 1, one border loop, every vertex in a single fan.
+    // Does not assume that they are connected.
     bool is_disk(const std::vector<uint32_t>& faces, uint32_t chart) {
         int64_t euler = static_cast<int64_t>(faces.size());
         int64_t border = 0;
