@@ -11,7 +11,7 @@ namespace gim {
 
 namespace {
 
-// The charts sampled side by side, as triangles.
+// Samples the charts side by side and returns the triangles.
 Mesh sample_side_by_side(const Atlas& atlas, double scale) {
     Packing row;
     row.scale = scale;
@@ -26,7 +26,7 @@ Mesh sample_side_by_side(const Atlas& atlas, double scale) {
     return samples_as_mesh(sample_charts(atlas.charts, atlas.maps, row));
 }
 
-// Of the vertices to the charts sampled side by side; empty where those make no triangle.
+// Returns the distance of each vertex to the charts sampled side by side. Empty if they make no triangle.
 std::vector<ClosestPoint> distances_of(const Mesh& mesh, const Atlas& atlas, uint32_t samples) {
     double area = 0;
     for (const ChartMap& map : atlas.maps) area += map.area;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSevereStrain = 1.5;
 
-// Flattens charts, taking over the maps of those that have not changed since the last time.
+// Flattens charts. A chart that has not changed since the last time keeps its map. Returns whether any was flattened.
 Result<bool> flatten(const std::vector<double>& importance, const AtlasOptions& options, const Progress& progress,
                      std::vector<Chart> old_charts, Atlas& atlas) {
     std::vector<ChartMap> old_maps = std::move(atlas.maps);
@@ -33,13 +33,13 @@ Result<bool> flatten(const std::vector<double>& importance, const AtlasOptions& 
     return !changed.empty();
 }
 
-// The faces of the surface where chart c's border would run into itself. In: its map has a crossing.
+// Returns the faces of the surface where chart c's border would cross itself. In: its map has a crossing.
 std::array<uint32_t, 2> crossing_faces(const Atlas& atlas, uint32_t c) {
     const std::array<uint32_t, 2>& faces = *atlas.maps[c].crossing;
     return {atlas.charts[c].source_face[faces[0]], atlas.charts[c].source_face[faces[1]]};
 }
 
-// Takes the charts of the partition apart, flattens them and splits those that do not flatten, until all do.
+// Takes the charts of the partition apart and flattens them. Splits those that do not flatten, until all do.
 Result<Atlas> settle(const Mesh& mesh, const Topology& topology, const std::vector<double>& importance,
                      const AtlasOptions& options, const Progress& progress, Atlas atlas) {
     std::vector<Chart> old_charts = std::move(atlas.charts);
@@ -52,12 +52,12 @@ Result<Atlas> settle(const Mesh& mesh, const Topology& topology, const std::vect
         for (uint32_t c = 0; solved && c < atlas.charts.size(); ++c) {
             const ChartMap& map = atlas.maps[c];
             if (atlas.charts[c].source_face.size() < 2) continue;
-            // At its best scale a map has as much area as stretch energy; what it has more than the surface is lost.
+            // At its best scale a map has as much area as stretch energy. Its area beyond the surface's is lost.
             const double taken = std::sqrt(map.energy * map.area), free = taken / std::sqrt(map.strain);
             const double ideal = importance.empty() ? map.surface : free;
             const bool wasteful = taken - ideal > options.most_loss * whole;
             if (!map.overlaps && (!wasteful || round >= options.most_splits)) continue;
-            // A little strain: part the two places that meet. Otherwise halve the chart.
+            // If there is little strain, part the two places that meet. Otherwise halve the chart.
             std::array<uint32_t, 2> ends{kNone, kNone};
             if (map.crossing && !map.overlaps && map.strain < kSevereStrain && taken - free > free - ideal)
                 ends = crossing_faces(atlas, c);

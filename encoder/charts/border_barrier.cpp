@@ -10,7 +10,7 @@ namespace gim {
 
 namespace {
 
-// Cells about as large as an edge of a closed polygon, listing the edges whose boxes meet them.
+// A grid over a closed polygon. Its cells are about as large as an edge and list the edges whose boxes meet them.
 class EdgeGrid {
   public:
     EdgeGrid(const std::vector<Vec2>& polygon, double margin) : polygon_(polygon), low_(polygon[0]) {

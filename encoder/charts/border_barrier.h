@@ -1,4 +1,4 @@
-// Keeps the border of a chart's map clear of itself: finds where it crosses, and pushes apart what comes close.
+// Keeps the border of a chart's map clear of itself: finds crossings, and pushes close parts of the border apart.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,23 +13,23 @@
 
 namespace gim {
 
-// Two edges (numbers of their first corners) in which a closed polygon touches or crosses itself, if it does. O(n) for
-// polygons with edges of similar length.
+// Finds two edges (numbers of their first corners) in which a closed polygon touches or crosses itself. Empty if there
+// are none. O(n) if the edges have similar lengths.
 std::optional<std::array<uint32_t, 2>> find_crossing(const std::vector<Vec2>& polygon);
 
-// A force on the border of a chart beside the map's own energy.
+// A force on the border of a chart, in addition to the map's own energy.
 class BorderForce {
   public:
     virtual ~BorderForce() = default;
-    // Infinite where the map is not allowed.
+    // Returns infinity if the map is not allowed.
     virtual double energy(const std::vector<Vec2>& uv) const = 0;
-    // add(vertex, gradient, a bound from above on the vertex's block of the Hessian)
+    // add(vertex, gradient, upper bound on the vertex's block of the Hessian)
     using Add = std::function<void(uint32_t, const Vec2&, const Eigen::Matrix2d&)>;
     virtual void derivatives(const std::vector<Vec2>& uv, const Add& add) const = 0;
 };
 
-// Keeps a border from running into itself: weight * (reach / d - 1)^2 for every border vertex and border edge that are
-// closer than `reach` in the plane but not along the border.
+// Keeps a border from running into itself. Its energy is the sum of weight * (reach / d - 1)^2 over all border vertices
+// and border edges that are closer than `reach` in the map but not along the border. d: their distance in the map.
 class BorderBarrier : public BorderForce {
   public:
     BorderBarrier(const Chart& chart, double weight);
@@ -38,8 +38,8 @@ class BorderBarrier : public BorderForce {
     void derivatives(const std::vector<Vec2>& uv, const Add& add) const override;
 
   private:
-    // Calls body(pair, distance, direction from edge to vertex) for every close pair. False when the border crosses
-    // itself.
+    // Calls body(vertex and edge, where on the edge (0..1), distance, direction from edge to vertex) for every close
+    // pair. Returns false if the border crosses itself.
     template <class Body>
     bool for_each_close(const std::vector<Vec2>& uv, const Body& body) const;
     bool near_along(size_t vertex, size_t edge) const;

@@ -11,8 +11,8 @@ namespace gim {
 
 namespace {
 
-// Slivers are treated as this high over their longest edge, or as having this part of a mean face's area, whichever is
-// less: they neither lock the solver nor take up room.
+// A sliver counts as if its height were kLeastHeight of its longest edge, or its area kLeastArea of a mean face's,
+// whichever is less. So it neither locks the solver nor takes up room.
 constexpr double kLeastHeight = 0.02, kLeastArea = 0.01;
 
 MapElement element_of(const Vec3& a, const Vec3& b, const Vec3& c, double mean_area, double importance) {
@@ -47,7 +47,7 @@ struct Singular {
     double s1 = 0, s2 = 0;
 };
 
-// j = u diag(s1, s2) v^T for a positive determinant: both factors rotations, s1 >= s2 > 0.
+// Finds j = u diag(s1, s2) v^T for a positive determinant: u and v are rotations, and s1 >= s2 > 0.
 Singular decompose(const Eigen::Matrix2d& j) {
     const double e = (j(0, 0) + j(1, 1)) / 2, f = (j(0, 0) - j(1, 1)) / 2;
     const double g = (j(1, 0) + j(0, 1)) / 2, h = (j(1, 0) - j(0, 1)) / 2;
@@ -93,7 +93,7 @@ void derivatives(const MapElement& e, const Eigen::Matrix2d& j, Vector6& gradien
 
     const auto u1 = d.u.col(0), u2 = d.u.col(1);
     const auto v1 = d.v.col(0), v2 = d.v.col(1);
-    // Directions in the space of 2x2 matrices, pulled back to the corners: column i of (D * gradient).
+    // Pulls a direction D in the space of 2x2 matrices back to the corners: corner i gets column i of (D * gradient).
     const auto pull = [&](const Eigen::Matrix2d& direction) {
         const Eigen::Matrix<double, 2, 3> x = direction * e.gradient;
         return Vector6(Eigen::Map<const Vector6>(x.data()));

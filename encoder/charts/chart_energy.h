@@ -1,8 +1,8 @@
-// The energy of a chart's map, one triangle at a time, with its derivatives (chart_parametrize.h says why this energy).
+// Computes the energy of a chart's map and its derivatives, per triangle (chart_parametrize.h says why this energy).
 //
-// In the singular values s1, s2 of the map from the surface to the plane: importance/2 * (1/s1^2 + 1/s2^2) + s1 s2, times
-// the triangle's area. The Hessian's eigensystem is known in closed form: Smith, de Goes, Kim. Analytic Eigensystems for
-// Isotropic Distortion Energies. ACM TOG 2019.
+// A triangle's energy is its area times (importance/2 * (1/s1^2 + 1/s2^2) + s1 s2). s1 and s2 are the singular values
+// of the triangle's map. The Hessian's eigensystem is known in closed form: Smith, de Goes, Kim. Analytic Eigensystems
+// for Isotropic Distortion Energies. ACM TOG 2019.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace gim {
 
-// The surface's side of a triangle: gradients of the three hat functions in its own plane, its area, its importance.
+// A triangle on the surface: gradients of its three hat functions in its own 2D coordinates, its area, its importance.
 struct MapElement {
     Eigen::Matrix<double, 2, 3> gradient;
     double area = 0, importance = 1;
@@ -28,7 +28,7 @@ inline Eigen::Matrix2d jacobian(const MapElement& e, const Vec2& a, const Vec2& 
     return a * e.gradient.col(0).transpose() + b * e.gradient.col(1).transpose() + c * e.gradient.col(2).transpose();
 }
 
-// The triangle's energy; infinite where the map turns it over. j: the map's Jacobian.
+// Returns the triangle's energy. Infinite if the map turns the triangle over. j: the map's Jacobian.
 inline double energy(const MapElement& e, const Eigen::Matrix2d& j) {
     const double det = j.determinant();
     if (!(det > 0)) return std::numeric_limits<double>::infinity();
@@ -38,7 +38,7 @@ inline double energy(const MapElement& e, const Eigen::Matrix2d& j) {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Gradient and positive semi-definite part of the Hessian over (a, b, c). j: the map's Jacobian.
+// Computes the gradient and the positive semi-definite part of the Hessian over (a, b, c). j: the map's Jacobian.
 void derivatives(const MapElement& e, const Eigen::Matrix2d& j, Vector6& gradient, Matrix6& hessian);
 
 }  // namespace gim

@@ -14,21 +14,22 @@ namespace gim {
 
 namespace {
 
-// Boxes of all charts together may have this many times the samples of the rectangle. The margins that the coarsest levels
-// need would else make them far larger than what they hold.
+// All boxes together may have this many times the samples of the rectangle. Without a limit, the margins for the
+// coarsest levels would make boxes far larger than their charts.
 constexpr uint64_t kMostBoxes = 4;
 
-// A box's lattice: at level L its sample (column, row) is the point (column, row) * 2^L + origin of the rectangle.
+// The origin of a box's lattice. At level L its sample (column, row) is point (column, row) * 2^L + origin of the
+// rectangle.
 struct Lattice {
     int64_t column = 0, row = 0;
 };
 
-// One chart at all levels, its masks on lattices that begin at their own corners.
+// One chart at all levels. Each mask lies on a lattice that begins at the mask's own corner.
 struct ChartPyramid {
     Lattice origin;                  // of level 0
     uint32_t columns = 0, rows = 0;  // of level 0
-    std::vector<ChartMask> masks;    // of levels 1, 2, ...; mask.pose into the mask
-    std::vector<Lattice> corners;    // of masks in their level's lattice, before the origin is moved
+    std::vector<ChartMask> masks;    // of levels 1, 2, ...; mask.pose leads to the mask
+    std::vector<Lattice> corners;    // of the masks, in their level's lattice
 };
 
 // The rectangle that the samples of a loop lie in.
@@ -43,8 +44,8 @@ struct Extent {
     }
 };
 
-// A chart that is too small for its cut-nodes at its scale, or no disk, may grow: there is room in its box, and its samples
-// beyond the border go on smoothly.
+// Rasterises a chart at a coarse level. The chart may grow if it is too small for its cut-nodes or no disk: its box has
+// room, and its samples beyond the border continue smoothly. Empty if growing does not help.
 std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const ChartPose& pose, size_t least_border,
                                      double least_band) {
     for (const double band : {least_band, least_band + 0.3, least_band + 0.6, least_band + 1}) {
@@ -54,8 +55,8 @@ std::optional<ChartMask> coarse_mask(const std::vector<Vec2>& border, const Char
     return std::nullopt;
 }
 
-// Rasterises a chart at the coarser levels and finds the box that holds them all. Levels are numbered from 1 up to the
-// last at which the chart is a disk with room for its cut-nodes.
+// Rasterises a chart at the coarser levels and finds the box that holds all levels. Stops before the first level at
+// which the chart is no disk or has no room for its cut-nodes.
 ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPose& pose, const Extent& finest,
                           uint32_t most_levels, double band) {
     ChartPyramid pyramid;
@@ -80,7 +81,7 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
                    (first.row + mask.mask.height - 1) * (int64_t{1} << level));
         pyramid.masks.push_back(std::move(mask));
     }
-    // The origin may move by whole samples of the coarsest level only.
+    // The origin may only move by whole samples of the coarsest level.
     const auto whole = [&](int64_t before) {
         const auto unit = int64_t{1} << pyramid.masks.size();
         return (before + unit - 1) / unit * unit;
@@ -92,7 +93,7 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
         pyramid.corners[level - 1].column += left >> level;
         pyramid.corners[level - 1].row += above >> level;
     }
-    // Large enough to be halved as often as there are levels.
+    // The box must be large enough to be halved for every level.
     const int64_t least = (int64_t{1} << pyramid.masks.size()) + 1;
     pyramid.columns = static_cast<uint32_t>(std::max(extent.last_column + left + 1, least));
     pyramid.rows = static_cast<uint32_t>(std::max(extent.last_row + above + 1, least));
@@ -101,7 +102,7 @@ ChartPyramid make_pyramid(const Chart& chart, const ChartMap& map, const ChartPo
 
 // ---- from seam records to borders
 
-// Where a chart's samples lie in an image, and in its box.
+// Where a chart's box lies in an image.
 struct Placement {
     int64_t column = 0, row = 0;  // of the box's first sample in the image
     uint32_t columns = 0;         // of the box
@@ -130,7 +131,7 @@ Result<LevelBorders> borders_of(const MultiChartImage& image, const std::vector<
     return borders;
 }
 
-// The charts of a coarser level one below the other, zipped.
+// Places the charts of a coarser level one below the other and zips them. Empty if the level has to be left out.
 std::optional<LevelBorders> zip_level(const Atlas& atlas, const std::vector<ChartPyramid>& pyramids, uint32_t level,
                                       const TopologySummary& wanted, uint32_t threads) {
     Packing packing;
@@ -171,7 +172,7 @@ bool same_topology(const TopologySummary& a, const TopologySummary& b) {
 
 namespace {
 
-// With coarse samples that lie within `band` of a border taken in.
+// Makes all levels. On coarser ones, samples up to `band` outside a border belong to its chart.
 Result<ChartLevels> make_images(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
                                 const TopologySummary& wanted, uint32_t most_levels, double band, uint32_t threads) {
     GIM_TRY(paths, path_samples(image.mask, image.seams));
@@ -219,7 +220,7 @@ Result<ChartLevels> make_images(const MultiChartImage& image, const Atlas& atlas
         result.levels.push_back(std::move(*borders));
     }
 
-    // Samples of charts; whose they are follows from the packing's masks, less what zippering has cut off.
+    // A chart's samples are those of its mask in the packing, except those that zippering has cut off.
     for (size_t c = 0; c < count; ++c) {
         const ChartBox& box = result.charts[c];
         result.positions.emplace_back(size_t{box.columns} * box.rows, Vec3::Zero());
@@ -243,7 +244,7 @@ Result<ChartLevels> make_images(const MultiChartImage& image, const Atlas& atlas
 
 Result<ChartLevels> make_chart_levels(const MultiChartImage& image, const Atlas& atlas, const Packing& packing,
                                       const TopologySummary& wanted, uint32_t most_levels, uint32_t threads) {
-    // A level whose samples happen to lie badly for its zippers often does well with a few more or fewer.
+    // If a level's samples happen to lie badly for its zippers, a few more or fewer samples often help.
     constexpr size_t kEnoughLevels = 4;
     GIM_TRY(best, make_images(image, atlas, packing, wanted, most_levels, kBand, threads));
     for (const double band : {0.4, 0.6, 0.3, 0.7}) {

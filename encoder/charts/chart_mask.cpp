@@ -17,8 +17,9 @@ constexpr size_t kLargestFilledHole = 4;
 constexpr std::array<std::array<int, 2>, 8> kNeighbour{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-// Fans of triangles around a defined sample with the given neighbours. Quad q lies between neighbours 2q and 2q+2; it
-// is solid with two of its three others. Solid quads are joined across a defined neighbour between them.
+// Counts the fans of triangles around a defined sample with the given neighbours. Quad q lies between neighbours 2q and
+// 2q+2. It is solid if two of its three other samples are defined. Solid quads are joined across a defined neighbour
+// between them.
 constexpr int count_fans(uint32_t neighbours) {
     const auto bit = [&](uint32_t k) { return (neighbours >> (k % 8)) & 1; };
     const auto solid = [&](uint32_t q) { return bit(2 * q) + bit(2 * q + 1) + bit(2 * q + 2) >= 2; };
@@ -30,7 +31,8 @@ constexpr int count_fans(uint32_t neighbours) {
     return quads == 4 && joints == 4 ? 1 : quads - joints;
 }
 
-// One fan, and every straight neighbour shares a triangle: or else a chart one sample wide could come apart unnoticed.
+// Returns whether there is one fan, and every straight neighbour shares a triangle with the sample. Without the second
+// condition, a chart one sample wide could come apart unnoticed.
 constexpr bool is_sound(uint32_t neighbours) {
     if (count_fans(neighbours) != 1) return false;
     const auto bit = [&](uint32_t k) { return (neighbours >> (k % 8)) & 1; };
@@ -42,7 +44,7 @@ constexpr bool is_sound(uint32_t neighbours) {
     return true;
 }
 
-// Per neighbourhood, the smallest one that contains it and has one fan; straight neighbours are preferred.
+// Finds for each neighbourhood the smallest sound one that contains it. Prefers straight neighbours.
 std::array<uint8_t, 256> make_repairs() {
     std::array<uint8_t, 256> repair{};
     for (uint32_t n = 0; n < 256; ++n) {
@@ -65,7 +67,7 @@ uint32_t neighbourhood(const SampleMask& mask, int64_t column, int64_t row) {
 }
 
 void fill_interior(const std::vector<Vec2>& polygon, SampleMask& mask) {
-    // Columns at which the border crosses each row; the half-open rule counts a corner on the row once.
+    // The columns at which the border crosses each row. The half-open rule counts a corner on the row once.
     std::vector<std::vector<double>> crossings(mask.height);
     for (size_t i = 0; i < polygon.size(); ++i) {
         Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
@@ -106,8 +108,8 @@ void fill_band(const std::vector<Vec2>& polygon, double band, SampleMask& mask) 
     }
 }
 
-// Fills undefined samples that cannot reach the rectangle's rim by steps in the four directions, in pieces of at most
-// kLargestFilledHole.
+// Fills holes of at most kLargestFilledHole samples. A hole is a set of undefined samples that cannot reach the
+// rectangle's rim by steps in the four directions.
 void fill_small_holes(SampleMask& mask) {
     std::vector<uint8_t> seen(mask.defined.size(), 0);
     std::vector<uint32_t> piece;
@@ -133,7 +135,7 @@ void fill_small_holes(SampleMask& mask) {
     }
 }
 
-// Defines a sample between two pieces that meet at a corner only. False when there is nothing to join.
+// Defines a sample between two pieces that only meet at a corner. Returns false if there is nothing to join.
 bool join_pieces(SampleMask& mask) {
     const auto number = [&](int64_t column, int64_t row) { return static_cast<uint32_t>(row * mask.width + column); };
     DisjointSets pieces(mask.defined.size());
@@ -161,7 +163,7 @@ bool join_pieces(SampleMask& mask) {
     return any;
 }
 
-// One pass only: again and again would eat thin tips from their ends.
+// Cuts spikes off in one pass. More passes would eat thin tips from their ends.
 void cut_spikes(SampleMask& mask) {
     std::vector<uint32_t> spikes;
     for (uint32_t i = 0; i < mask.defined.size(); ++i) {
@@ -172,7 +174,7 @@ void cut_spikes(SampleMask& mask) {
     }
 }
 
-// Cuts the mask down to its defined samples and moves the pose along.
+// Crops the mask to its defined samples and moves the pose along.
 void crop(ChartMask& chart) {
     const SampleMask& mask = chart.mask;
     uint32_t left = mask.width, right = 0, top = mask.height, bottom = 0;
@@ -219,7 +221,7 @@ void dilate_to_manifold(SampleMask& mask) {
             const int64_t c = column + kNeighbour[k][0], r = row + kNeighbour[k][1];
             if (!((added >> k) & 1) || c < 0 || r < 0 || c >= mask.width || r >= mask.height) continue;
             mask.defined[static_cast<size_t>(r * mask.width + c)] = 1;
-            // The new sample and everything around it has to be looked at again.
+            // The new sample and its neighbours have to be looked at again.
             for (int64_t y = r - 1; y <= r + 1; ++y) {
                 for (int64_t x = c - 1; x <= c + 1; ++x) {
                     if (mask.at(x, y)) queue.push_back(static_cast<uint32_t>(y * mask.width + x));
@@ -233,7 +235,7 @@ bool is_spike(const SampleMask& mask, uint32_t sample) {
     if (!mask.defined[sample]) return false;
     const uint32_t around = neighbourhood(mask, sample % mask.width, sample / mask.width);
     const auto bit = [&](uint32_t k) { return (around >> (k % 8)) & 1; };
-    // Both neighbours in the only solid quad belong to further triangles, or they would be lost with the tip.
+    // Both neighbours in the only solid quad must belong to further triangles. Otherwise they would go with the tip.
     const auto in_other_triangle = [&](uint32_t k) {
         const int64_t column = sample % mask.width + kNeighbour[k % 8][0],
                       row = sample / mask.width + kNeighbour[k % 8][1];
@@ -260,7 +262,7 @@ bool can_remove(const SampleMask& mask, uint32_t sample) {
     const int64_t column = sample % mask.width, row = sample / mask.width;
     constexpr uint32_t kInterior = 0xff;
     if (!mask.defined[sample] || neighbourhood(mask, column, row) == kInterior) return false;
-    // An edge across an undefined corner goes with the sample, and what it joined comes apart.
+    // An edge across an undefined corner would go with the sample, and the parts it joins would come apart.
     for (uint32_t k = 0; k < 8; k += 2) {
         const auto there = [&](uint32_t n) {
             return mask.at(column + kNeighbour[n % 8][0], row + kNeighbour[n % 8][1]);
@@ -280,8 +282,8 @@ bool can_remove(const SampleMask& mask, uint32_t sample) {
 }
 
 std::vector<std::vector<uint32_t>> trace_borders(const SampleMask& mask) {
-    // Every border sample has one border edge out and one in. Walk a quad's triangles counter-clockwise (x along
-    // columns, y along rows): an edge whose reverse belongs to no other triangle is on the border.
+    // Every border sample has one border edge out and one in. Walk a quad's triangles counter-clockwise (x is the
+    // column, y is the row): an edge is on the border if its reverse belongs to no other triangle.
     const auto solid = [&](int64_t column, int64_t row) {  // the quad with first corner (column, row)
         return mask.at(column, row) + mask.at(column + 1, row) + mask.at(column, row + 1) +
                    mask.at(column + 1, row + 1) >=
@@ -292,7 +294,7 @@ std::vector<std::vector<uint32_t>> trace_borders(const SampleMask& mask) {
     for (int64_t row = -1; row < mask.height; ++row) {
         for (int64_t column = -1; column < mask.width; ++column) {
             if (!solid(column, row)) continue;
-            // Corners counter-clockwise, and the quad on the other side of the edge to the next corner.
+            // The corners counter-clockwise, and for each the quad beyond the edge to the next corner.
             const std::array<std::array<int64_t, 2>, 4> corner{
                 {{column, row}, {column + 1, row}, {column + 1, row + 1}, {column, row + 1}}};
             const std::array<std::array<int64_t, 2>, 4> beyond{
@@ -330,7 +332,7 @@ bool mask_is_disk(const SampleMask& mask) {
         const uint32_t around = neighbourhood(mask, column, row);
         if (count_fans(around) != 1) return false;
         first = std::min(first, i);
-        // Vertex, the edges to +column and +row where a triangle has them, the quad at (+, +).
+        // Count the vertex, and the edges to +column and +row if a triangle has them.
         const auto bit = [&](uint32_t k) { return ((around >> k) & 1) != 0; };
         const auto solid = [&](uint32_t q) { return bit(2 * q) + bit((2 * q + 1) % 8) + bit((2 * q + 2) % 8) >= 2; };
         ++euler;
@@ -338,7 +340,7 @@ bool mask_is_disk(const SampleMask& mask) {
         euler -= bit(2) && (solid(0) || solid(1));
     }
     if (first == kNone) return false;
-    // A quad of four: two triangles, one diagonal; of three: one triangle, one diagonal.
+    // A quad of four samples has two triangles and one diagonal. A quad of three has one triangle and one diagonal.
     for (int64_t row = 0; row + 1 < mask.height; ++row) {
         for (int64_t column = 0; column + 1 < mask.width; ++column) {
             euler += mask.at(column, row) + mask.at(column + 1, row) + mask.at(column, row + 1) +
@@ -346,7 +348,7 @@ bool mask_is_disk(const SampleMask& mask) {
                      4;
         }
     }
-    // A manifold of several pieces may add up to 1 too: its border must be one loop (a closed piece cannot be).
+    // A manifold of several pieces may add up to 1 too. So its border must be one loop; no piece can be closed.
     return euler == 1 && trace_borders(mask).size() == 1;
 }
 
@@ -376,7 +378,7 @@ ChartMask rasterize_chart_on_lattice(const std::vector<Vec2>& border, const Char
     chart.mask.defined.assign(size_t{chart.mask.width} * chart.mask.height, 0);
     fill_interior(polygon, chart.mask);
     fill_band(polygon, band, chart.mask);
-    if (chart.mask.count() == 0) {  // it lies between the samples
+    if (chart.mask.count() == 0) {  // the chart lies between the samples
         chart.mask = {};
         return chart;
     }

@@ -23,7 +23,7 @@ class Newton {
           hessian_(2 * size(), 2 * size()),
           gradient_(2 * size()) {
         for (const Triangle& t : mesh_.triangles) {
-            // The lower half of the pattern; values are filled in by slot.
+            // The pattern only; values are filled in by slot.
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
                     for (int a = 0; a < 2; ++a)
@@ -50,7 +50,7 @@ class Newton {
             const double reached = search(here, slope);
             const double gain = here - reached;
             here = reached;
-            // A border in contact with itself holds the whole step back now and then.
+            // A border in contact with itself sometimes holds back the whole step.
             small_gains = gain <= options.tolerance * here ? small_gains + 1 : 0;
             if (small_gains > (force_ ? 5 : 0) || (step >= kPatience && here > options.hopeless)) break;
         }
@@ -96,7 +96,7 @@ class Newton {
                 }
             });
         }
-        // Rigid motions are free; a trace of identity makes the matrix definite.
+        // Rigid motions cost nothing, so a little of the identity is added to make the matrix definite.
         double trace = 0;
         for (size_t k = diagonal; k < slots_.size(); ++k) trace += values[slots_[k]];
         const double shift = 1e-7 * trace / static_cast<double>(slots_.size() - diagonal);
@@ -110,7 +110,7 @@ class Newton {
         return direction_.allFinite();
     }
 
-    // Backtracks from the longest step that keeps all triangles upright. Returns the energy reached.
+    // Backtracks from the longest step that keeps all triangles upright. Returns the energy it reaches.
     double search(double here, double slope) {
         double step = 1;
         const auto direction = [&](uint32_t v) { return Vec2(direction_[2 * v], direction_[2 * v + 1]); };
@@ -121,7 +121,7 @@ class Newton {
             const double c = cross(p, q), b = cross(dp, q) + cross(p, dq), a = cross(dp, dq);
             const double disc = b * b - 4 * a * c;
             if (disc < 0) continue;
-            // The smaller positive root, without cancellation.
+            // Find the smaller positive root without cancellation.
             const double half = -0.5 * (b + std::copysign(std::sqrt(disc), b));
             for (const double root : {half / a, c / half}) {
                 if (root > 0 && std::isfinite(root)) step = std::min(step, 0.9 * root);

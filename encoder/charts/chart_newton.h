@@ -1,4 +1,4 @@
-// Newton's method for the map of a chart: finds the least energy (chart_energy.h) near a map that is upright.
+// Finds the least energy (chart_energy.h) near an upright map of a chart, by Newton's method.
 #pragma once
 
 #include <limits>
@@ -16,8 +16,8 @@ struct NewtonOptions {
     double hopeless = std::numeric_limits<double>::infinity();  // gives up early while the energy is above this
 };
 
-// uv: per vertex, every triangle counter-clockwise; none flips. force: on the border; null: the border is free to run over
-// itself.
+// uv: per vertex. Every triangle is counter-clockwise and stays so. force: acts on the border; if null, the border may
+// cross itself.
 void minimise_energy(const Mesh& mesh, const std::vector<MapElement>& elements, const BorderForce* force,
                      const NewtonOptions& options, std::vector<Vec2>& uv);
 

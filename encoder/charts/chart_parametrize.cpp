@@ -16,7 +16,7 @@ namespace gim {
 
 namespace {
 
-constexpr int kBarrierSteps = 60;  // Newton steps with a barrier, at most
+constexpr int kBarrierSteps = 60;  // most Newton steps with a barrier
 
 // ---- start --------------------------------------------------------------------------------------------------------
 
@@ -41,7 +41,7 @@ std::vector<Vec2> projected(const Mesh& mesh) {
     return uv;
 }
 
-// Tutte's map to a circle: injective on any disk, as no two border vertices are on a line with a third.
+// Computes Tutte's map to a circle. It is injective on any disk, because no three border vertices lie on a line.
 bool tutte(const Chart& chart, double total_area, std::vector<Vec2>& uv) {
     const Mesh& mesh = chart.mesh;
     const double radius = std::sqrt(total_area / std::numbers::pi);
@@ -60,7 +60,7 @@ bool tutte(const Chart& chart, double total_area, std::vector<Vec2>& uv) {
         uv[chart.loop[i]] = radius * Vec2(std::cos(2 * std::numbers::pi * part), std::sin(2 * std::numbers::pi * part));
         fixed[chart.loop[i]] = 1;
     }
-    // The edges of an interior vertex all leave it as half-edges.
+    // All edges of an interior vertex leave it as half-edges.
     std::vector<std::array<uint32_t, 2>> arcs;
     for (const Triangle& t : mesh.triangles) {
         for (size_t i = 0; i < 3; ++i) arcs.push_back({t[i], t[(i + 1) % 3]});
@@ -94,7 +94,7 @@ void measure_map(const Chart& chart, const std::vector<double>& importance, Char
 ChartMap relax_chart(const Chart& chart, const std::vector<double>& importance, ChartMap map, double area_weight,
                      const BorderForce& force, const ChartParametrizeOptions& options) {
     const std::vector<MapElement> elements = elements_of(chart.mesh, importance);
-    // Less weight on the area is more on all the rest.
+    // Less weight on the area is the same as more weight on the rest.
     std::vector<MapElement> pressed = elements;
     for (MapElement& e : pressed) e.importance /= area_weight;
     minimise_energy(chart.mesh, pressed, &force, {options.most_steps, options.tolerance}, map.uv);
@@ -129,10 +129,10 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
         };
         map.crossing = std::array{face_at((*crossing)[0]), face_at((*crossing)[1])};
         const double overlapping = map.energy * map.area;
-        // Once more, from a map that does not overlap and with the border kept from meeting itself.
+        // Solve again from a map without overlap, with a barrier that keeps the border from meeting itself.
         if (!start_from_circle()) return unsolvable;
         const BorderBarrier barrier(chart, total_area / static_cast<double>(mesh.triangles.size()));
-        // The energy is twice sqrt(E A) at best: a strain of 1.5 has 1.2 times as much.
+        // The energy is at best twice sqrt(E A). A strain of 1.5 has 1.2 times as much.
         minimise_energy(mesh, elements, &barrier,
                         {std::min(options.most_steps, kBarrierSteps), options.tolerance, 2.5 * std::sqrt(overlapping)},
                         map.uv);
@@ -140,7 +140,7 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
         map.strain = std::max(1.0, map.energy * map.area / overlapping);
         map.overlaps = border_crossing().has_value();
     }
-    // Newton stopped a little early, perhaps: the last of the scale is exact.
+    // Newton may have stopped a little early. Correct the scale exactly.
     const double scale = std::pow(map.energy / map.area, 0.25);
     if (std::isfinite(scale) && scale > 0) {
         for (Vec2& p : map.uv) p *= scale;

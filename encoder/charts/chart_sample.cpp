@@ -12,7 +12,7 @@ namespace gim {
 
 namespace {
 
-// Barycentric coordinates may be this far below zero: rounding must not leave a sample on an edge without a face.
+// Barycentric coordinates may go down to this. Otherwise rounding could leave a sample on an edge without a face.
 constexpr double kRounding = -1e-9;
 
 void sample_chart(const Chart& chart, const ChartMap& map, const PlacedChart& placed, MultiChartImage& image) {
@@ -21,7 +21,7 @@ void sample_chart(const Chart& chart, const ChartMap& map, const PlacedChart& pl
     uv.reserve(map.uv.size());
     for (const Vec2& p : map.uv) uv.push_back(placed.chart.pose(p) - Vec2(placed.column, placed.row));
     constexpr double kOutside = -1;
-    std::vector<double> best(mask.defined.size(), kOutside);  // least barycentric coordinate in the face so far
+    std::vector<double> best(mask.defined.size(), kOutside);  // least barycentric coordinate in the best face so far
     const auto position = [&](size_t i) -> Vec3& {
         return image.positions[(placed.row + i / mask.width) * image.width() + placed.column + i % mask.width];
     };

@@ -6,7 +6,7 @@ namespace gim {
 
 namespace {
 
-// Border half-edges, and the way from one to the next around a chart.
+// Knows the border half-edges, and which one follows another around a chart.
 class Borders {
   public:
     Borders(const Mesh& mesh, const Topology& topology, const Chartification& charts)
@@ -20,7 +20,7 @@ class Borders {
         return h;
     }
 
-    // Per vertex of the surface, whether it is a cut-node.
+    // Returns for each vertex of the surface whether it is a cut-node.
     std::vector<uint8_t> find_nodes() const {
         std::vector<uint32_t> valence(mesh_.positions.size(), 0);
         for (uint32_t h = 0; h < topology_.twin.size(); ++h) {
@@ -63,7 +63,7 @@ class Borders {
 
 std::vector<Chart> take_apart(const Mesh& mesh, const Topology& topology, const Chartification& charts) {
     std::vector<Chart> result(charts.count);
-    // A chart meets a vertex in one fan, so (chart, vertex) names a copy; charts are filled one after the other.
+    // A chart meets a vertex in one fan, so (chart, vertex) names a copy. Charts are filled one after the other.
     std::vector<std::vector<uint32_t>> faces(charts.count);
     for (uint32_t f = 0; f < mesh.triangles.size(); ++f) faces[charts.chart_of_face[f]].push_back(f);
     std::vector<uint32_t> local(mesh.positions.size(), kNone);

@@ -1,10 +1,10 @@
-// A chartified surface taken apart: every chart as a mesh of its own, its border as a loop of cut-paths, and which path
-// lies on the other side of which.
+// Takes a chartified surface apart. Every chart becomes a mesh of its own, and its border a loop of cut-paths. Each
+// path knows the path on its other side.
 // Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5, "Cut-Nodes", "Cut-Paths".
 //
-// A cut-node is a vertex where the number of border edges is not two. We differ: a seam that closes upon itself without
-// meeting one (two charts that make up a sphere) gets three cut-nodes of its own, an input boundary of a single chart
-// one, so that every border is made of paths.
+// A cut-node is a vertex where the number of border edges is not two. We differ from the paper for seams that close
+// upon themselves without a cut-node. Such a seam between two charts (that make up a sphere) gets three cut-nodes, an
+// input boundary of a single chart gets one. So every border is made of paths.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct Chart {
     std::vector<uint32_t> loop;    // border vertices of `mesh`, faces on the left; starts at a cut-node
     std::vector<ChartPath> paths;  // in loop order
 
-    // Index after the last vertex of path p in `loop`, counted on past its end: the end node is loop[end % size].
+    // Returns the index in `loop` at which path p ends. Its end node is loop[path_end(p) % loop.size()].
     uint32_t path_end(size_t p) const {
         return p + 1 < paths.size() ? paths[p + 1].first : static_cast<uint32_t>(loop.size());
     }

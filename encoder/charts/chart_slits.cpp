@@ -15,9 +15,9 @@ namespace gim {
 
 namespace {
 
-constexpr double kNarrow = 1.2;  // in samples: what masks fill
-constexpr double kApart = 5;     // in samples of an even map: longer triangles than this are visible
-constexpr double kStep = 0.5;    // in samples, between the points of a border that are looked at
+constexpr double kNarrow = 1.2;  // in samples; masks fill gaps narrower than this
+constexpr double kApart = 5;     // in samples of an even map; triangles longer than this are visible
+constexpr double kStep = 0.5;    // in samples, between the border points that are looked at
 
 struct BorderPoint {
     Vec2 map;
@@ -49,7 +49,8 @@ std::vector<BorderPoint> border_points(const Chart& chart, const ChartMap& map, 
     return points;
 }
 
-// The faces beside the two border points that a narrow gap brings together although they are farthest apart.
+// Finds the two border points that are farthest apart on the surface among those close together across a narrow gap.
+// Returns the faces beside them. Empty if no gap is narrow.
 std::optional<std::array<uint32_t, 2>> worst_slit(const Chart& chart, const ChartMap& map, double spacing) {
     std::vector<BorderPoint> points = border_points(chart, map, kStep * spacing);
     std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.map.x() < b.map.x(); });
@@ -85,7 +86,7 @@ std::vector<uint32_t> find_slits(double spacing, Atlas& atlas) {
 
 namespace {
 
-// The face of a chart whose middle is nearest to a point.
+// Finds the face of a chart whose middle is nearest to a point.
 uint32_t nearest_face(const Chart& chart, const Vec3& point) {
     uint32_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
-// Finds charts whose map closes a slit in them: two stretches of border that come nearer to each other in the map than a
-// sample, far from each other on the surface. Masks fill such slits, and the image's triangles bridge them, which no fit
-// can mend. A chart of a limb, cut open along it, does so.
+// Finds charts whose map closes a slit: two pieces of border are about a sample apart in the map, but far apart on the
+// surface. Masks fill such slits, so the image's triangles bridge them, and no fit can mend that. A chart of a limb
+// that is cut open along its length is an example.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,13 @@
 
 namespace gim {
 
-// `spacing`: of the samples in the maps. Marks every chart with a slit by a face on each side of the worst place
-// (ChartMap::crossing), for split_charts() to part them there. Out: the charts, ascending. O(sum of squared borders).
+// Marks every chart that has a slit with a face on each side of its worst place (ChartMap::crossing). split_charts()
+// then parts the two. `spacing`: of the samples in the maps. Out: the charts, ascending. O(sum of squared borders).
 std::vector<uint32_t> find_slits(double spacing, Atlas& atlas);
 
-// What slipped through: charts with triangles of the image that span a gap, their middle off the surface by more than a
-// sample's spacing. Marked in the same way. `surface`: that of the charts. O(triangles), and a search for each long one.
+// Finds charts that find_slits() missed: a long edge of the image spans a gap, and its middle is more than a sample's
+// spacing off the surface. Marks them in the same way. `surface`: what the charts were cut from. O(triangles), and a
+// search for each long one.
 std::vector<uint32_t> find_bridges(const MultiChartImage& image, const Packing& packing, const Mesh& surface,
                                    Atlas& atlas);
 

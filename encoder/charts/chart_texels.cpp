@@ -17,14 +17,14 @@ namespace {
 
 constexpr int kRounds = 12;  // of the extension
 
-// A triangle of a cell with its corners in samples, relative to the cell's first.
+// A triangle of a cell. Its corners are in samples, relative to the cell's first sample.
 struct PlaneTriangle {
     const GeometryImage& image;
     const std::vector<Vec3>& outside;
     Triangle samples;
     std::array<Vec2, 3> corner;
 
-    // Nothing where the point lies outside. The test is exact: all coordinates are multiples of 2^-k.
+    // Returns the texel at a point, or nothing if the point lies outside. Exact: coordinates are multiples of 2^-k.
     std::optional<Texel> at(const Vec2& p) const {
         const double area = twice_signed_area(corner[0], corner[1], corner[2]);
         const std::array<double, 3> w{twice_signed_area(p, corner[1], corner[2]) / area,

@@ -1,4 +1,4 @@
-// Texels of a plane on packed charts: 2^exponent texels a sample, those that lie in a triangle.
+// Finds the texels of a plane on packed charts: those that lie in a triangle. A sample step has 2^exponent texels.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace gim {
 
-// How fine a plane is that has as many texels as a square of `side` texels a side has for as many samples.
+// Returns the exponent with which a plane of the image comes closest to side * side texels.
 uint8_t chart_plane_exponent(const GeometryImage& image, uint32_t side);
 
-// Texels in the order of the triangles that they lie in; those on an edge belong to the first. O(texels).
+// Returns texels in the order of the triangles they lie in. A texel on an edge belongs to the first one. O(texels).
 TexelGrid chart_texels(const GeometryImage& image, uint8_t exponent);
 
-// Bands of a plane; texels beyond the charts are chosen so that they cost little. values: a triple per texel.
+// Returns the bands of a plane. Gives texels beyond the charts values that cost few bytes. values: a triple per texel.
 Pyramid<float> analyse_chart_plane(const TexelGrid& grid, std::vector<float> values, float quantizer);
 
 }  // namespace gim

@@ -68,7 +68,8 @@ class Partition {
         for_each_outgoing(graph_->topology, vertex, [&](uint32_t h) { found |= label_[face_of(h)] == chart; });
         return found;
     }
-    // Adding f keeps the chart a disk when they meet in one arc: one edge and not the opposite corner, or two edges.
+    // Returns whether the chart stays a disk with f. They must meet in one arc: one edge and not the opposite corner,
+    // or two edges.
     bool can_join(uint32_t f, uint32_t chart) const {
         int shared = 0;
         uint32_t shared_edge = 0;
@@ -89,8 +90,8 @@ class Partition {
 
 struct Growth {
     Partition partition;
-    std::vector<uint32_t> seeds;  // those given and those that had to be added
-    uint32_t last_face = kNone;   // the last one assigned
+    std::vector<uint32_t> seeds;  // those given, and those that had to be added
+    uint32_t last_face = kNone;   // the last face assigned
 };
 
 // Grows charts over the faces with in_region (empty: all of them).
@@ -101,7 +102,7 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
     std::vector<Vec3> normal_sum;
     std::priority_queue<Entry> queue;
     std::vector<uint32_t> refused;
-    constexpr double kSharp = 0.5;  // cosine between faces from which on a chart rather ends than goes on
+    constexpr double kSharp = 0.5;  // a chart rather ends than goes on if the cosine between faces is below this
     const double chart_size = std::sqrt(std::accumulate(graph.area.begin(), graph.area.end(), 0.0) /
                                         static_cast<double>(result.seeds.size()));
     const auto take = [&](uint32_t f, uint32_t chart, double cost) {
@@ -136,7 +137,7 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
                 refused.push_back(entry.face);
             }
         }
-        // Whatever is left lies in a component without a seed or closes a chart up: the first such face is a new seed.
+        // A face that is left lies in a component without a seed or closes a chart up. The first one becomes a seed.
         while (next_refused < refused.size() && partition[refused[next_refused]] != kNone) ++next_refused;
         uint32_t seed = next_refused < refused.size() ? refused[next_refused] : kNone;
         if (seed == kNone) {
@@ -154,7 +155,7 @@ Growth grow(const DualGraph& graph, std::vector<uint32_t> seeds, double planarit
 
 // ---- phase 2: seeds -----------------------------------------------------------------------------------------------
 
-// Per chart its most interior face: the one farthest from the border along the dual graph.
+// Finds the most interior face of each chart: the one farthest from the border along the dual graph.
 std::vector<uint32_t> interior_seeds(const DualGraph& graph, const Partition& partition, uint32_t count) {
     std::vector<double> distance(graph.faces(), -1);
     std::priority_queue<Entry> queue;
@@ -188,11 +189,11 @@ std::vector<uint32_t> interior_seeds(const DualGraph& graph, const Partition& pa
     return seeds;
 }
 
-// While bootstrapping: the faces that growth reached last are far from every seed. Adds up to `wanted`, spread out by
-// taking the last face of each of the charts that ran farthest.
+// Adds up to `wanted` seeds while bootstrapping. Takes the farthest face of each of the charts that ran farthest, so
+// new seeds are far from every seed and spread out.
 void add_far_seeds(const DualGraph& graph, const Growth& growth, uint32_t wanted, std::vector<uint32_t>& seeds) {
-    // Cost-to-reach is not kept by growth; distance from the chart's seed serves as well and is cheap. A little above
-    // 1, so that flat charts are split too once nothing else is left.
+    // Growth does not keep the cost to reach a face. Distance from the chart's seed serves as well and is cheap.
+    // Planarity is a little above 1, so that flat charts are split too if no others are left.
     constexpr double kPlanarity = 1.001;
     const auto count = static_cast<uint32_t>(growth.seeds.size());
     std::vector<double> spread(count, 0);
@@ -219,8 +220,8 @@ void add_far_seeds(const DualGraph& graph, const Growth& growth, uint32_t wanted
 
 // ---- afterwards ---------------------------------------------------------------------------------------------------
 
-// Hands a face that is an ear of its chart (one neighbour inside) to the chart that lies at its two other edges, where
-// that makes the border shorter. Both stay disks.
+// Hands an ear of a chart (a face with one neighbour inside) to a chart at its other edges if that shortens the border.
+// Both charts stay disks.
 void straighten(const DualGraph& graph, Partition& partition, uint32_t count) {
     std::vector<uint32_t> size(count, 0);
     for (uint32_t f = 0; f < graph.faces(); ++f) ++size[partition[f]];
@@ -276,8 +277,8 @@ uint32_t renumber(std::vector<uint32_t>& labels) {
     return count;
 }
 
-// Two disks make one when they meet in a single arc: Euler characteristics add up to 1 + 1 - (vertices - edges in
-// common) and no vertex is met apart from the arc.
+// Returns whether two disks make one. They do if they meet in a single arc and at no vertex apart from it: then the
+// Euler characteristic 1 + 1 - (common vertices - common edges) is 1.
 bool meet_in_one_arc(const DualGraph& graph, const Partition& partition, const std::vector<uint32_t>& faces_of_a,
                      uint32_t a, uint32_t b) {
     std::set<uint32_t> common_vertices;
@@ -294,7 +295,7 @@ bool meet_in_one_arc(const DualGraph& graph, const Partition& partition, const s
     return common_edges > 0 && common_vertices.size() == common_edges + 1;
 }
 
-// Merges charts as long as there are more than wanted and a pair makes one disk; the pair that stays flattest first.
+// Merges pairs of charts that make one disk, while there are more charts than wanted. Takes the flattest pair first.
 void merge_surplus(const DualGraph& graph, Partition& partition, uint32_t count, uint32_t wanted) {
     std::vector<std::vector<uint32_t>> faces(count);
     std::vector<Vec3> normal(count, Vec3::Zero());
@@ -398,8 +399,8 @@ void split_chart(const Mesh& mesh, const Topology& topology, uint32_t chart, std
         ends[1] = farthest_from(graph.centroid[ends[0]]);
         if (ends[0] == ends[1]) ends[1] = faces.front() == ends[0] ? faces.back() : faces.front();
     }
-    // Mostly by distance: normals did not help here, or the chart would not need a split. Ends that are given must end
-    // up apart, so no Lloyd rounds for them.
+    // Grow mostly by distance. If normals helped here, the chart would need no split. Given ends must stay apart, so
+    // they get no Lloyd rounds.
     constexpr double kMostlyDistance = 2;
     std::vector<uint32_t> seeds(ends.begin(), ends.end());
     Growth growth = grow(graph, seeds, kMostlyDistance, in_region);
@@ -429,7 +430,7 @@ double mean_normal_deviation(const Mesh& mesh, const Chartification& charts) {
 
 bool charts_are_disks(const Mesh& mesh, const Topology& topology, const Chartification& charts) {
     if (charts.chart_of_face.size() != mesh.triangles.size()) return false;
-    // Per chart: Euler characteristic 1 with one simple border loop. A vertex's faces inside a chart must be one fan.
+    // A chart must have Euler characteristic 1 and one simple border loop. Its faces at a vertex must be one fan.
     std::vector<int64_t> euler(charts.count, 0), border(charts.count, 0), loop(charts.count, 0);
     std::vector<uint32_t> first(charts.count, kNone);
     const auto chart_at = [&](uint32_t h) { return charts.chart_of_face[face_of(h)]; };
@@ -449,8 +450,8 @@ bool charts_are_disks(const Mesh& mesh, const Topology& topology, const Chartifi
     }
     for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
         if (topology.outgoing[v] == kNone) continue;
-        std::vector<uint32_t> fans,
-            around;  // charts, one entry per fan: fans begin at a border half-edge that leaves v
+        // The chart of each fan and of each face around v. A fan begins at a border half-edge that leaves v.
+        std::vector<uint32_t> fans, around;
         for_each_outgoing(topology, v, [&](uint32_t h) {
             if (is_border(h)) fans.push_back(chart_at(h));
             around.push_back(chart_at(h));

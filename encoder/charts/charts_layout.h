@@ -1,4 +1,4 @@
-// The layout mcgim for the drivers: packed charts, ready to be coded.
+// Offers packed charts to the drivers as the layout mcgim, ready to be coded.
 #pragma once
 
 #include <memory>

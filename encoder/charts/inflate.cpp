@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::array<int, 2>, 8> kAround{
     {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 
-// The image's samples shared out among the charts.
+// Shares out the image's samples among the charts.
 class Shares {
   public:
     explicit Shares(const Packing& packing) : width_(packing.width), height_(packing.height) {
@@ -32,7 +32,7 @@ class Shares {
         raise_walls();
     }
 
-    // Whether a chart may define the sample.
+    // Returns whether a chart may define the sample.
     bool open_to(uint32_t chart, int64_t column, int64_t row) const {
         if (column < 0 || row < 0 || column >= width_ || row >= height_) return false;
         const size_t i = number(column, row);
@@ -68,7 +68,7 @@ class Shares {
         }
     }
 
-    // Every free sample goes to the border sample that is nearest, nearly.
+    // Gives every free sample to the border sample that is nearest, or nearly so.
     template <class Queue>
     void spread(Queue& queue) {
         std::vector<uint8_t> done(owner_.size(), 0);
@@ -92,7 +92,7 @@ class Shares {
         }
     }
 
-    // The banks of an inlet: near each other, but not along the border.
+    // Returns whether two border samples are on the banks of an inlet: near each other, but not along the border.
     bool are_banks(uint32_t a, uint32_t b) const {
         constexpr double kDetour = 2, kSlack = 4;
         const Border &p = borders_[a], &q = borders_[b];
@@ -101,7 +101,7 @@ class Shares {
         return std::min(gap, p.length - gap) > kDetour * apart + kSlack;
     }
 
-    // Of two neighbours that belong to different charts one becomes gutter; between banks diagonals count as well.
+    // Makes one of two neighbours gutter if they belong to different charts or banks. Diagonals only count for banks.
     void raise_walls() {
         for (int64_t row = 0; row < height_; ++row) {
             for (int64_t column = 0; column < width_; ++column) {
@@ -128,7 +128,7 @@ class Shares {
     std::vector<Border> borders_;
 };
 
-// How far a point is from the nearest sample that a chart must not define; less than 0 beyond the first such.
+// Knows how far a point is from the nearest sample that a chart must not define. Beyond that sample, it is less than 0.
 class Territory {
   public:
     Territory(const Shares& shares, uint32_t chart, const PlacedChart& placed) {
@@ -149,7 +149,7 @@ class Territory {
         for (size_t i = 0; i < open.size(); ++i) distance_[i] = open[i] ? inside[i] : 1 - outside[i];
     }
 
-    // Bilinear; in samples of the image.
+    // Interpolates bilinearly. All values are in samples of the image.
     double distance(const Vec2& p, Vec2& gradient) const {
         const double x = std::clamp(p.x() - static_cast<double>(column_), 0.0, static_cast<double>(width_) - 1.001);
         const double y = std::clamp(p.y() - static_cast<double>(row_), 0.0, static_cast<double>(height_) - 1.001);
@@ -164,7 +164,7 @@ class Territory {
     }
 
   private:
-    // Euclidean distance to the nearest sample of that kind: along rows first, then over the columns.
+    // Computes the Euclidean distance to the nearest sample of a kind: along rows first, then over the columns.
     std::vector<double> distances(const std::vector<uint8_t>& open, uint8_t kind) const {
         const auto far = static_cast<double>(width_ + height_);
         std::vector<double> across(open.size(), far), result(open.size());
@@ -197,14 +197,14 @@ class Territory {
     std::vector<double> distance_;
 };
 
-// Pushes the border back from where samples of others or of nobody would become defined.
+// Pushes the border back from samples that the chart must not define.
 class Wall : public BorderForce {
   public:
     Wall(const Chart& chart, const std::vector<Vec2>& uv, const ChartPose& pose, const Territory& territory,
          double pressure)
         : pose_(pose), territory_(territory) {
         turn_ << std::cos(pose.angle), -std::sin(pose.angle), std::sin(pose.angle), std::cos(pose.angle);
-        constexpr double kSpacing = 0.5;  // samples between points that are looked at
+        constexpr double kSpacing = 0.5;  // in samples, between points that are looked at
         for (size_t k = 0; k < chart.loop.size(); ++k) {
             const uint32_t v = chart.loop[k], w = chart.loop[(k + 1) % chart.loop.size()];
             const double length = (uv[w] - uv[v]).norm();
@@ -235,15 +235,15 @@ class Wall : public BorderForce {
         double t, weight;
     };
 
-    // The pressure of a map at its own size is about 1, in energy per area: it pushes kGive samples deep.
+    // A map at its own size has a pressure of about 1, in energy per area. It presses kGive samples into the wall.
     double stiffness(double pressure) const {
         constexpr double kGive = 0.08;
         return pressure * pose_.scale / kGive;
     }
-    // body(point, depth, direction), the two in object units.
+    // Calls body(point, depth, direction). Depth and direction are in object units.
     template <class Body>
     void for_each_close(const std::vector<Vec2>& uv, const Body& body) const {
-        constexpr double kKept = 0.65;  // half a sample of band, and what the wall gives
+        constexpr double kKept = 0.65;  // in samples: half a sample of band, and what the wall gives
         for (const Point& point : points_) {
             Vec2 gradient;
             const Vec2 p = pose_((1 - point.t) * uv[point.v] + point.t * uv[point.w]);
@@ -275,19 +275,19 @@ bool near_mask(const SampleMask& mask, const Vec2& p) {
     return false;
 }
 
-// A map as a chart in place, if it is a good disk in its share.
+// Rasterises a map in place of the chart. If it makes no good disk in its share, returns false and leaves the chart.
 bool place(const Chart& chart, uint32_t c, const std::vector<Vec2>& uv, const Shares& shares, PlacedChart& placed) {
     if (!upright(chart.mesh, uv)) return false;
     const std::vector<Vec2> border = border_of(chart, uv);
     if (find_crossing(border)) return false;
     ChartMask found = rasterize_chart_on_lattice(border, placed.chart.pose);
     if (!found.is_disk) return false;
-    // Where its first sample lies in the image.
+    // Returns where the mask's first sample lies in the image.
     const auto corner = [&] {
         const Vec2 first = placed.chart.pose.offset - found.pose.offset;
         return std::array{std::llround(first.x()), std::llround(first.y())};
     };
-    // The border may reach a little too far, and dilation knows nothing of walls: what can go without harm goes.
+    // The border may reach a little too far, and dilation ignores walls. Remove samples outside if that does no harm.
     std::vector<uint32_t> outside;
     SampleMask& mask = found.mask;
     for (uint32_t i = 0; i < mask.defined.size(); ++i) {
@@ -309,7 +309,7 @@ bool place(const Chart& chart, uint32_t c, const std::vector<Vec2>& uv, const Sh
     if (!outside.empty()) return false;
     trim(found);
     if (!found.is_disk || found.border_length < std::max<size_t>(4, 2 * chart.paths.size())) return false;
-    // The seams are closed at the mask's border: the map's must be near it everywhere.
+    // Seams are closed at the mask's border, so the map's border must be near it everywhere.
     for (const Vec2& p : border) {
         if (!near_mask(found.mask, found.pose(p))) return false;
     }

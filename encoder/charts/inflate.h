@@ -1,14 +1,13 @@
 // Lets packed charts grow into the free samples around them.
 //
-// Not in the papers. A packing leaves a fifth of the samples undefined. What counts in the end is the stretch of the charts
-// in a rectangle that is given: empty samples help nobody, while a map that is a little larger, or bent a little, than
-// its own optimum loses in the second order only. So every chart gets a territory - the samples nearest to it, with a
-// gutter to those of others and between the banks of its own inlets -, and its map is relaxed there, pressing outwards
-// until the territory's wall or its own stretch stops it. A map that does not come out as a disk in its territory is
-// taken back by parts.
+// This is not in the papers. A packing leaves a fifth of the samples undefined. The stretch of the charts in the given
+// rectangle is what counts, and empty samples do not help it. A map a little larger than its optimum, or bent a little,
+// loses in second order only. So every chart gets a territory: the samples nearest to it, with a gutter to other
+// territories and between the banks of its own inlets. Its map is relaxed there. It presses outwards until the
+// territory's wall or its own stretch stops it. If the new map makes no disk there, it is taken back step by step.
 //
-// In:  charts, their maps, where they are packed. Out: new maps and masks; poses and the rectangle stay.
-// Cost: some ten sparse factorizations per chart and round. Deterministic at any thread count.
+// In:  charts, their maps and where they are packed. Out: new maps and masks; poses and the rectangle stay.
+// Cost: about ten sparse factorizations per chart and round. Deterministic at any thread count.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +20,8 @@
 namespace gim {
 
 struct InflateOptions {
-    double area_weight = 0.6;  // of area in a map's energy; 1: no pressure; near 0: all of the territory at any price
-    int rounds = 2;            // territories are shared out anew in each
+    double area_weight = 0.6;  // of area in a map's energy; 1: no pressure; near 0: fills the territory at any price
+    int rounds = 2;            // each shares out the territories again
     int most_steps = 6;        // Newton steps per chart and round
     uint32_t threads = 0;      // 0: all cores
 };

@@ -14,10 +14,10 @@ namespace gim {
 
 namespace {
 
-// Coarser levels than this are never asked for: charts have too few samples long before.
+// The most levels to ask for. Charts have too few samples long before.
 constexpr uint32_t kMostLevels = 8;
 
-// Packed charts, and the surface cut open between them.
+// Shows the packed charts, and the surface cut open between them.
 Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& packing) {
     const double longer = std::max(packing.width, packing.height) - 1;
     Mesh opened;

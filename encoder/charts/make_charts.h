@@ -1,4 +1,4 @@
-// All stages of the multi-chart layout before coding: from a clean mesh to charts at all levels.
+// Runs all stages of the multi-chart layout before coding: from a clean mesh to charts at all levels.
 #pragma once
 
 #include "encoder/base/result.h"

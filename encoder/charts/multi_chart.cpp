@@ -22,7 +22,7 @@ namespace {
 // Edges longer than this part of the root of the surface's area are split, so that charts have faces to choose from.
 constexpr double kLongestEdge = 0.045;
 
-// The part of an image that charts fill; only to judge density by.
+// The part of an image that charts usually fill. Used only to judge the density of samples.
 constexpr double kUsualPacking = 0.8;
 
 constexpr int kMostSlitRounds = 4;
@@ -34,23 +34,23 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
     for (size_t c = 0; c < atlas.charts.size(); ++c) {
         PackShape shape;
         shape.border = border_of(atlas.charts[c], atlas.maps[c].uv);
-        // Room for a sample between any two cut-nodes.
+        // Leave room for a sample between any two cut-nodes.
         shape.least_border = std::max<uint32_t>(4, static_cast<uint32_t>(2 * atlas.charts[c].paths.size()));
         shapes.push_back(std::move(shape));
     }
     return shapes;
 }
 
-// What the maps' efficiency is inverse to.
+// Returns a value to which the maps' stretch efficiency is inversely proportional.
 double total_cost(const std::vector<ChartMap>& maps) {
     double energy = 0, area = 0;
     for (const ChartMap& map : maps) energy += map.energy, area += map.area;
     return energy * area;
 }
 
-// The mesh as charts, and what it takes to split them.
+// The mesh as charts, with all that splitting them needs.
 struct ChartedMesh {
-    Mesh mesh;  // of short edges
+    Mesh mesh;  // with short edges
     Topology topology;
     AtlasOptions options;
     std::vector<double> importance;  // per face; empty: 1
@@ -103,7 +103,7 @@ Result<void> split_at_slits(uint32_t most_samples, ChartedMesh& charted, const S
     return {};
 }
 
-// One attempt to make an image of packed charts. Inflates packing and maps.
+// Makes one attempt at an image of packed charts. Inflates the packing and the maps.
 Result<MultiChartImage> sample_and_zip(const ChartedMesh& charted, uint32_t threads, std::vector<ChartMap>& maps,
                                        Packing& packing) {
     InflateOptions options;
@@ -113,8 +113,8 @@ Result<MultiChartImage> sample_and_zip(const ChartedMesh& charted, uint32_t thre
     return zip(sample_charts(charts, maps, packing, threads), charts, maps, packing);
 }
 
-// Packs until the charts have no inlets and the seams close without bridges. Charts that do not fit are split before the
-// next attempt. If seams do not close, samples fall elsewhere in the next packing.
+// Packs until the charts have no inlets and the seams close without bridges. Splits charts that do not fit before the
+// next attempt. If seams do not close, takes another seed, so that samples fall elsewhere in the next packing.
 Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh charted, StageClock& clock) {
     PackOptions pack_options;
     pack_options.most_samples = options.samples;

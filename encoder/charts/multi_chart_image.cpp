@@ -13,7 +13,7 @@ namespace {
 
 Error misfit(const std::string& what) { return {Stage::kSample, "the seam record does not fit the mask: " + what}; }
 
-// What chart_split asks of a mask.
+// Answers what chart_split asks of a mask.
 struct MaskGrid {
     const SampleMask& mask;
     const std::vector<uint8_t>& border;

@@ -1,10 +1,10 @@
 // An image of packed charts, with undefined samples, and the record of its seams.
 // Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Sections 3 and 4.5.
 //
-// What the record leaves out follows from the mask: a chart's border is the loop of its triangles' border edges, triangles
-// on the left (trace_borders). A loop is cut into paths;
-// two paths that are one curve on the surface are mates and are zipped together: a string of steps says which sample
-// goes with which. So a reader of mask and record can glue the samples again after lossy coding.
+// The mask says what the record leaves out: a chart's border is the loop of its triangles' border edges, with the
+// triangles on the left (trace_borders). A loop is cut into paths. Two paths that are one curve on the surface are
+// mates and are zipped together: a string of steps says which sample goes with which. So a reader of mask and record
+// can glue the samples again after lossy coding.
 #pragma once
 
 #include <cstdint>
@@ -30,25 +30,26 @@ struct SeamRecord {
     };
     std::vector<Loop> loops;      // one per chart
     std::vector<SeamPath> paths;  // loop after loop, along the loops
-    // Per path with a mate of a higher number, in order: its steps, with as many kBoth and kFirst as the path is long.
+    // The steps of each path whose mate has a higher number, in order. kBoth and kFirst together occur `length` times.
     std::vector<std::vector<ZipStep>> zippers;
 };
 
-// A geometry image of packed charts, and what its gluing follows from (glue_charts.h).
+// A geometry image of packed charts, with the mask and seams that its gluing is made from (glue_charts.h).
 struct MultiChartImage : GeometryImage {
     SampleMask mask;
     SeamRecord seams;
 };
 
-// Samples of every path from its begin to its end node, both included. Fails when the record does not fit the mask.
+// Returns the samples of every path from its begin node to its end node, both included. Fails if the record does not
+// fit the mask.
 Result<std::vector<std::vector<uint32_t>>> path_samples(const SampleMask& mask, const SeamRecord& seams);
 
-// Which samples are one surface point: per sample the smallest index of its class, kNone where undefined. Fails when the
-// record does not fit the mask (lengths, mates, steps). O(samples).
+// Finds which samples are one surface point. Returns per sample the smallest index of its class, or kNone if it is
+// undefined. Fails if the record does not fit the mask (lengths, mates, steps). O(samples).
 Result<std::vector<uint32_t>> glue_samples(const SampleMask& mask, const SeamRecord& seams);
 
-// Which triangles each cell of a mask has: (width - 1) * (height - 1) cells, row-major. point: of glue_samples. Splits as
-// the decoder does (format/chart_split.h).
+// Finds which triangles each cell of a mask has: (width - 1) * (height - 1) cells, row-major. point: from
+// glue_samples(). Splits cells as the decoder does (format/chart_split.h).
 std::vector<CellKind> classify_cells(const SampleMask& mask, const std::vector<uint32_t>& point);
 
 }  // namespace gim

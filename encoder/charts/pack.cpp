@@ -19,7 +19,7 @@ namespace gim {
 
 namespace {
 
-// A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set when any of the 2^k samples from x on
+// A strip of fixed width that is filled from row 0 on. level(k, row): bit x is set if any of the 2^k samples from x on
 // is taken or next to a taken one.
 class Strip {
   public:
@@ -32,7 +32,7 @@ class Strip {
     }
     uint32_t height() const { return height_; }
 
-    // Columns of `row` at which the piece's first sample may not lie, as bits; false when that is all of them.
+    // Finds the columns at which the piece must not begin in `row`, as bits. Returns false if that is all of them.
     bool free_columns(const Piece& piece, uint32_t row, std::vector<uint64_t>& blocked) const {
         blocked.resize(words_);
         const uint32_t last = width_ - piece.width;
@@ -66,7 +66,7 @@ class Strip {
     const uint64_t* level(uint32_t k, uint32_t row) const {
         return bits_.data() + (size_t{k} * height_ + row) * words_;
     }
-    // The bits below position `end`, of word w.
+    // Returns the bits of word w that lie below position `end`.
     static uint64_t low_bits(uint32_t w, uint32_t end) {
         if (end <= w * 64) return 0;
         return end >= w * 64 + 64 ? ~uint64_t{0} : (uint64_t{1} << (end - w * 64)) - 1;
@@ -104,8 +104,8 @@ class Strip {
     std::vector<uint64_t> bits_;
 };
 
-// How one packing is made: the strip's width, the order of the charts, and what "low" means for each: 1, the lowest top
-// edge; 0, the lowest centre of gravity.
+// Says how to make one packing: the strip's width, the order of the charts, and what "low" means for each. 1: its top
+// edge is lowest. 0: its centre of gravity is lowest.
 struct Recipe {
     uint32_t width = 0;
     std::vector<uint32_t> order;
@@ -113,9 +113,9 @@ struct Recipe {
 };
 
 struct Attempt {
-    std::vector<PieceSpot> spots;  // empty: higher than the limit
+    std::vector<PieceSpot> spots;  // empty if the packing would be higher than the limit
     uint32_t height = 0;
-    double crowding = 0;  // mean top edge, of equal heights the lower is the better
+    double crowding = 0;  // mean top edge; if heights are equal, lower is better
 };
 
 // Puts each chart as low as it goes, then as far left. Gives up above `limit` rows.
@@ -161,7 +161,7 @@ class Packer {
         for (const PackShape& shape : input_)
             area += polygon_area(shape.border) * shape.magnification * shape.magnification;
         if (!(area > 0)) return Error{Stage::kSample, "the charts have no area to pack"};
-        // A first packing at one scale ...
+        // Make a first packing at one scale.
         constexpr double kSmaller = 0.85;
         double scale = std::sqrt(0.8 * options_.most_samples / area) / kSmaller;
         std::vector<Candidate> best;
@@ -171,7 +171,7 @@ class Packer {
             if (!rasterize(scale) || !all_short()) return report_broken();
             best = explore();
         }
-        // ... squeezed, and enlarged until it is just as large as allowed.
+        // Squeeze it, then enlarge it until it is as large as allowed.
         SqueezeOptions squeeze_options;
         squeeze_options.most_moves = uint64_t{options_.effort} * kMovesPerEffort;
         squeeze_options.seed = options_.seed;
@@ -212,17 +212,17 @@ class Packer {
         return static_cast<uint32_t>(random_ % count);
     }
 
-    // Coarse enough to try all places quickly, fine enough to tell good ones from bad ones.
+    // Returns the side of a coarse cell: coarse enough to try all places quickly, fine enough to tell good from bad.
     static uint32_t coarse_cell(double samples) {
         constexpr double kFewestCells = 64;
         uint32_t cell = 2;
         while (cell < 16 && 4.0 * cell * cell * kFewestCells < samples) cell *= 2;
         return cell;
     }
-    // Chart c in all orientations, or in a few about `angle` if there is one and one of those can be used. A chart with
-    // no usable one grows by itself; empty when that does not help.
+    // Rasterizes chart c in all orientations. If `angle` is given, tries the few about it first. If no orientation can
+    // be used, the chart grows by itself. Empty if that does not help.
     Shape rasterize(uint32_t c, double scale, const double* angle) const {
-        // A border that is too short grows with the chart; an inlet may or may not open.
+        // A border that is too short grows with the chart. An inlet may or may not open.
         constexpr int kMostGrowths = 40, kMostGrowthsOfNoDisk = 6;
         const double turn = 2 * std::numbers::pi / options_.orientations, near = 2.5 * turn;
         double magnification = input_[c].magnification;
@@ -247,7 +247,7 @@ class Packer {
         }
         return shape;
     }
-    // All charts. `angles`, one for each, or none: close to which to keep.
+    // Rasterizes all charts. Returns false if any is broken. `angles`: one per chart to keep close to, or none.
     bool rasterize(double scale, const std::vector<double>& angles = {}) {
         shapes_.assign(input_.size(), {});
         parallel_blocks(input_.size(), 1, options_.threads, [&](size_t c, size_t, size_t) {
@@ -259,7 +259,7 @@ class Packer {
         }
         return broken_.empty();
     }
-    // Charts too long for any good rectangle are to be split as well.
+    // Charts too long for any good rectangle count as broken too. Returns false if there are any.
     bool all_short() {
         constexpr double kLongest = 1.2;  // in sides of the square of all samples
         for (uint32_t c = 0; c < shapes_.size(); ++c) {
@@ -279,7 +279,7 @@ class Packer {
     bool aspect_is_fine(uint32_t width, uint32_t height) const {
         return width < options_.most_aspect * height && height < options_.most_aspect * width;
     }
-    // Tries recipes in parallel; those of forbidden aspect are left out.
+    // Tries recipes in parallel. Leaves out those with a forbidden aspect.
     std::vector<Candidate> evaluate(std::vector<Recipe> recipes, double slack) {
         std::vector<Attempt> attempts(recipes.size());
         parallel_blocks(recipes.size(), 1, options_.threads, [&](size_t, size_t begin, size_t end) {
@@ -296,7 +296,7 @@ class Packer {
         return candidates;
     }
 
-    // A beam of the best recipes, varied over and over.
+    // Keeps a beam of the best recipes and varies them over and over.
     std::vector<Candidate> explore() {
         std::vector<Recipe> recipes;
         std::vector<uint32_t> order(shapes_.size());
@@ -366,7 +366,7 @@ class Packer {
                                  [](const PieceLayout& a, const PieceLayout& b) { return a.area() < b.area(); });
     }
 
-    // The rectangle of that shape which makes the most of the bound.
+    // Returns the rectangle of the layout's shape that makes the most of the bound.
     PieceLayout largest_rectangle(const PieceLayout& layout) const {
         const double ideal = layout.width * std::sqrt(options_.most_samples / static_cast<double>(layout.area()));
         PieceLayout result;
@@ -379,7 +379,7 @@ class Packer {
         return result;
     }
 
-    // The layout of pieces at `old_scale`, taken over to those of shapes_ at `scale`: centres and angles stay.
+    // Takes a layout of `old_shapes` over to shapes_, which have another scale. Centres and angles stay.
     PieceLayout rescaled(const std::vector<Shape>& old_shapes, const PieceLayout& layout, PieceLayout result) const {
         const double across = static_cast<double>(result.width) / layout.width;
         const double down = static_cast<double>(result.height) / layout.height;
@@ -404,7 +404,7 @@ class Packer {
         return result;
     }
 
-    // The largest scale at which the layout still comes out without overlap.
+    // Packs at the largest scale at which the layout still comes out without overlap.
     Result<Packing> enlarge(const PieceLayout& layout, double scale, SqueezeOptions options) {
         constexpr double kFirstStep = 0.004, kLastStep = 0.0005;
         const std::vector<Shape> shapes = shapes_;

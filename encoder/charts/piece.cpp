@@ -20,7 +20,7 @@ std::vector<PieceRun> runs_of(const SampleMask& mask) {
     return runs;
 }
 
-// The mask and its neighbours in row and column, with a ring of room for them.
+// Returns the mask with its neighbours in row and column added, and a ring of room for them.
 SampleMask grown(const SampleMask& mask) {
     SampleMask result{mask.width + 2, mask.height + 2, {}};
     result.defined.resize(size_t{result.width} * result.height);
@@ -34,7 +34,7 @@ SampleMask grown(const SampleMask& mask) {
     return result;
 }
 
-// Cells of which at least half is covered, or else the one that is covered most.
+// Returns the cells of which at least half is covered, or else the one that is covered most.
 SampleMask shrunk(const SampleMask& mask, uint32_t cell) {
     SampleMask result{(mask.width + cell - 1) / cell, (mask.height + cell - 1) / cell, {}};
     std::vector<uint32_t> covered(size_t{result.width} * result.height, 0);

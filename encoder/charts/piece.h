@@ -17,11 +17,11 @@ struct Piece {
     uint32_t width = 0, height = 0;
     double centre = 0;             // mean row of its samples
     std::vector<PieceRun> runs;    // its samples, row by row
-    std::vector<PieceRun> scan;    // the same, longest first: the long ones rule positions out soonest
-    std::vector<PieceRun> reach;   // what it takes from other charts: itself and its neighbours in row and column, in
-                                   // rows and columns counted from one before its own first
+    std::vector<PieceRun> scan;    // the same, longest first, because long runs rule out positions soonest
+    std::vector<PieceRun> reach;   // samples that other charts must not use: its own and their neighbours in row and
+                                   // column; rows and columns count from one before its first
     uint32_t cell = 1;             // side of a coarse cell in samples
-    std::vector<PieceRun> coarse;  // the cells of which it covers half
+    std::vector<PieceRun> coarse;  // the coarse cells of which it covers half
     ChartMask chart;
 };
 
@@ -31,7 +31,7 @@ struct PieceSpot {
     uint32_t orientation = 0, column = 0, row = 0;
 };
 
-// One spot per shape.
+// A rectangle with one spot per shape.
 struct PieceLayout {
     uint32_t width = 0, height = 0;
     std::vector<PieceSpot> spots;

@@ -13,7 +13,7 @@ namespace gim {
 
 namespace {
 
-// A step of kBoth, as seen by the border loop of a chart: the pair of points (before, after) it leads between.
+// A step of kBoth as the border loop of a chart sees it: it leads from point `before` to point `after`.
 struct Advance {
     uint32_t before = 0, after = 0;     // representatives
     uint32_t zipper = kNone, step = 0;  // kNone: on an input boundary
@@ -25,7 +25,7 @@ using Walks = std::vector<std::vector<Advance>>;
 // Per zipper and step: whether to drop it. A dropped step of kBoth becomes a kFirst and a kSecond.
 using Drops = std::vector<std::vector<uint8_t>>;
 
-// Per path: the number of its zipper, kNone on an input boundary. Both mates have the same.
+// Returns the number of each path's zipper, or kNone on an input boundary. Both mates have the same one.
 std::vector<uint32_t> zippers_of_paths(const SeamRecord& seams) {
     std::vector<uint32_t> zipper(seams.paths.size(), kNone);
     uint32_t count = 0;
@@ -37,7 +37,7 @@ std::vector<uint32_t> zippers_of_paths(const SeamRecord& seams) {
     return zipper;
 }
 
-// The advances along one side of a zipper, in the direction of that side's border. own: the side's samples.
+// Returns the advances along one side of a zipper, in the direction of that side's border. own: the side's samples.
 std::vector<Advance> advances(const std::vector<ZipStep>& steps, uint32_t zipper, bool is_first,
                               const std::vector<uint32_t>& own, const std::vector<uint32_t>& point) {
     std::vector<Advance> result;
@@ -53,7 +53,7 @@ std::vector<Advance> advances(const std::vector<ZipStep>& steps, uint32_t zipper
     return result;
 }
 
-// samples: of path_samples. point: of glue_samples.
+// samples: from path_samples(). point: from glue_samples().
 Walks walks_of(const SeamRecord& seams, const std::vector<std::vector<uint32_t>>& samples,
                const std::vector<uint32_t>& point) {
     const std::vector<uint32_t> zippers = zippers_of_paths(seams);
@@ -76,8 +76,8 @@ Walks walks_of(const SeamRecord& seams, const std::vector<std::vector<uint32_t>>
     return walks;
 }
 
-// Merges the points of a piece of a border: `length` advances from the i-th on, of which one stays, on the seam with the
-// fewest. False where that would leave a seam without a step of kBoth.
+// Merges the points of a piece of a border: of `length` advances from the i-th on, it drops all but one, on the seam
+// with the fewest. Returns false if a seam would be left without a step of kBoth.
 bool merge_piece(const std::vector<Advance>& around, size_t i, size_t length, const SeamRecord& seams, Drops& drops) {
     const auto at = [&](size_t k) -> const Advance& { return around[(i + k) % around.size()]; };
     const auto room = [&](size_t k) {
@@ -100,8 +100,8 @@ bool merge_piece(const std::vector<Advance>& around, size_t i, size_t length, co
     return true;
 }
 
-// Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. False when
-// there is no such piece.
+// Merges the points between the ends of the doubled edge (a, b) along a short piece of some chart's border. Returns
+// false if there is no such piece.
 bool flatten(uint32_t a, uint32_t b, const Walks& walks, const SeamRecord& seams, Drops& drops) {
     constexpr size_t kLongestPiece = 6;
     for (const std::vector<Advance>& around : walks) {
@@ -120,7 +120,7 @@ bool flatten(uint32_t a, uint32_t b, const Walks& walks, const SeamRecord& seams
 
 using Edges = std::set<std::pair<uint32_t, uint32_t>>;  // the smaller point first
 
-// The first sample of each loop that a test accepts. test(loop, index into it).
+// Returns the first sample of each loop that a test accepts. test(loop, index into it).
 template <class Test>
 std::vector<uint32_t> first_of_each(const std::vector<std::vector<uint32_t>>& loops, const Test& test) {
     std::vector<uint32_t> found;
@@ -132,9 +132,9 @@ std::vector<uint32_t> first_of_each(const std::vector<std::vector<uint32_t>>& lo
     return found;
 }
 
-// Samples that are the tips of single triangles over a doubled edge: without them it is a border edge on that side. One
-// of each chart at a time, because two that touch must not both go. Where there are none: ends of a doubled edge that
-// runs across a chart.
+// Finds tips of single triangles over a doubled edge: without such a tip, the edge is a border edge on that side.
+// Returns one per chart at a time, because two that touch must not both go. If there are none, returns ends of doubled
+// edges that run across a chart.
 std::vector<uint32_t> find_spikes(const MultiChartImage& image, const Edges& doubled,
                                   const std::vector<uint32_t>& point) {
     using Loop = std::vector<uint32_t>;

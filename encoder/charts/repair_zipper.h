@@ -1,8 +1,8 @@
-// Makes the surface of a zippered image a manifold again where the zippers glued too much together.
+// Makes the surface of a zippered image a manifold again if the zippers glued too much together.
 //
-// Two triangles side by side in one chart may meet two others in its neighbour with the same three vertices: an edge with
-// four triangles. The repair merges the vertex between the ends of that edge with one of them, which flattens both pairs.
-// The method is ours; the paper of zipper.h does not mention the case.
+// Two charts that are zipped together may both have an edge between the same two points of their border. That edge then
+// has four triangles. The repair merges the border point between its ends with one of them, which flattens the
+// triangles there on both sides. The method is ours; the paper of zipper.h does not mention the case.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,13 @@
 
 namespace gim {
 
-// In:  an image with zippers; its gluing is made here. `close_seams` moves the border samples onto the cut-paths as the zippers say.
-// Out: nothing if the surface is a manifold now; the zippers have changed if it was not before. Otherwise samples of the
-//      image: without them in the mask it should be one. Fails where it knows of no such samples.
+// In:  an image with zippers; its gluing is made here. `close_seams` moves border samples onto the cut-paths as the
+//      zippers say.
+// Out: empty if the surface is a manifold now; the zippers have changed if it was none before. Otherwise samples to
+//      take out of the mask, so that the surface may become a manifold. Fails if it finds no such samples.
 Result<std::vector<uint32_t>> repair_zippers(MultiChartImage& image, const std::function<void()>& close_seams);
 
-// The error of an image that cannot be repaired: `edges` with too many triangles remain.
+// Returns the error for an image that cannot be repaired: `edges` edges with too many triangles remain.
 Error charts_too_small(size_t edges);
 
 }  // namespace gim

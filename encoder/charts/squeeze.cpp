@@ -13,10 +13,10 @@ namespace gim {
 
 namespace {
 
-constexpr int32_t kUnit = 64;  // weight of a pair that never stood in each other's way
+constexpr int32_t kUnit = 64;  // weight of two charts that were never in each other's way
 // How weights change from round to round.
 constexpr double kForgiving = 0.9, kLeastGrowth = 1.2, kFurtherGrowth = 0.8;
-// Orientations in which a move looks everywhere, and how many places of those it looks at closely.
+// A move looks everywhere in kTurns orientations, and looks closely at kTried of the places it finds.
 constexpr uint32_t kTurns = 6;
 constexpr size_t kTried = 8;
 constexpr double kMostWeighed = 1 << 29;  // sums over a rectangle stay within 31 bits
@@ -33,7 +33,7 @@ class Random {
     uint64_t state_;
 };
 
-// Samples of `a` that are in reach of `b`.
+// Counts the samples of `a` that are in reach of `b`.
 uint32_t count_overlap(const Piece& a, const PieceSpot& at, const Piece& b, const PieceSpot& bt) {
     const int64_t dx = int64_t{bt.column} - 1 - at.column, dy = int64_t{bt.row} - 1 - at.row;
     if (dx >= a.width || dy >= a.height || dx + b.width + 2 <= 0 || dy + b.height + 2 <= 0) return 0;
@@ -55,8 +55,7 @@ uint32_t count_overlap(const Piece& a, const PieceSpot& at, const Piece& b, cons
     return count;
 }
 
-// What stands in a chart's way: running sums along the rows of the weights of the other charts, at the resolution of
-// the samples and in cells.
+// What is in a chart's way: the weights of the other charts as running sums along rows, per sample and per coarse cell.
 class Field {
   public:
     void reset(uint32_t width, uint32_t height) {
@@ -75,7 +74,7 @@ class Field {
             sums[end] -= weight;
         }
     }
-    // From differences to running sums, and the coarse ones from those.
+    // Turns differences into running sums, and makes the coarse sums from them.
     void sum_up(uint32_t cell) {
         cell_ = cell;
         coarse_width_ = (width_ + cell - 1) / cell, coarse_height_ = (height_ + cell - 1) / cell;
@@ -103,7 +102,7 @@ class Field {
         }
         return cost;
     }
-    // Costs of places (k * cell, row) for k = 0 .. count - 1, in cells.
+    // Finds the costs of places (k * cell, row) for k = 0 .. count - 1, on coarse cells.
     void coarse_costs(const Piece& piece, uint32_t row, uint32_t count, int32_t* costs) const {
         std::fill_n(costs, count, 0);
         for (const PieceRun& run : piece.coarse) {
@@ -131,7 +130,7 @@ bool fits(const Piece& piece, uint32_t width, uint32_t height) {
     return piece.width <= width && piece.height <= height;
 }
 
-// The best places on coarse cells of one orientation.
+// The best places of one orientation on coarse cells.
 constexpr size_t kPlacesPerOrientation = 3;
 using Places = std::array<Place, kPlacesPerOrientation>;
 
@@ -151,7 +150,7 @@ Places coarse_places(const Field& field, const Piece& piece, uint32_t orientatio
     return best;
 }
 
-// Downhill from a place, in steps of a cell's half down to a sample.
+// Goes downhill from a place, in steps from half a cell down to a sample.
 Place descend(const Field& field, const Piece& piece, Place place) {
     if (!fits(piece, field.width(), field.height())) return {};
     const int64_t last_column = int64_t{field.width()} - piece.width, last_row = int64_t{field.height()} - piece.height;
@@ -181,7 +180,7 @@ class Separator {
     Separator(const std::vector<Shape>& shapes, const SqueezeOptions& options)
         : shapes_(shapes), options_(options), random_(options.seed), count_(shapes.size()) {}
 
-    // Whether `layout` could be freed of overlaps; it is changed in any case.
+    // Returns whether `layout` could be freed of overlaps. Changes it in any case.
     bool run(PieceLayout& layout, uint64_t& moves) {
         weights_.assign(count_ * count_, kUnit);
         overlaps_.assign(count_ * count_, 0);
@@ -217,7 +216,7 @@ class Separator {
 
     Random& random() { return random_; }
 
-    // Takes a line of samples out of the rectangle; what lies beyond moves up.
+    // Takes a line of samples out of the rectangle. What lies beyond moves up. Returns false if a chart does not fit.
     bool shrink(PieceLayout& layout, bool column) {
         uint32_t& side = column ? layout.width : layout.height;
         if (side < 2) return false;
@@ -228,7 +227,7 @@ class Separator {
             uint32_t& at = column ? layout.spots[i].column : layout.spots[i].row;
             const uint32_t extent = column ? piece->width : piece->height;
             if (extent > side) {
-                // Too long for the rectangle: any orientation that is not.
+                // The chart is too long for the rectangle. Take any orientation that fits.
                 uint32_t o = 0;
                 while (o < shapes_[i].size() && !fits(shapes_[i][o], layout.width, layout.height)) ++o;
                 if (o == shapes_[i].size()) return false;
@@ -241,7 +240,7 @@ class Separator {
         return true;
     }
 
-    // Two charts change places.
+    // Swaps the places of two charts.
     void disturb(PieceLayout& layout) {
         if (count_ < 2) return;
         const uint32_t a = random_(static_cast<uint32_t>(count_));
@@ -286,7 +285,7 @@ class Separator {
     void shuffle(std::vector<uint32_t>& order) {
         for (size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random_(static_cast<uint32_t>(k))]);
     }
-    // Pairs that overlap weigh more the more they do; the others are slowly forgiven.
+    // Raises the weights of pairs that overlap, the more they do. Slowly lowers the other weights.
     void reweigh(uint64_t area) {
         const auto most = std::max(2 * kUnit, static_cast<int32_t>(kMostWeighed / static_cast<double>(area)));
         const uint32_t largest = *std::max_element(overlaps_.begin(), overlaps_.end());
@@ -297,7 +296,7 @@ class Separator {
         }
     }
 
-    // Orientation o of chart i about the chart's present centre; inside the rectangle if it can be.
+    // Returns the spot of chart i in orientation o that keeps its centre. It lies inside the rectangle if possible.
     PieceSpot centred(const PieceLayout& layout, size_t i, uint32_t o) const {
         const Piece &from = piece(layout, i), &to = shapes_[i][o];
         const auto along = [](uint32_t at, uint32_t old_extent, uint32_t extent, uint32_t side) {
@@ -316,7 +315,7 @@ class Separator {
             if (j != i) field_.paint(piece(layout, j), layout.spots[j], weights_[i * count_ + j]);
         }
         field_.sum_up(shape[0].cell);
-        // Here or close by, in orientations close by ...
+        // Look here and close by, in orientations close by.
         const auto count = static_cast<uint32_t>(shape.size());
         const uint32_t now = layout.spots[i].orientation;
         Place best = descend(field_, shape[now], {0, layout.spots[i]});
@@ -325,7 +324,7 @@ class Separator {
             const Place place = descend(field_, shape[o], {0, centred(layout, i, o)});
             if (place.cost < best.cost) best = place;
         }
-        // ... or anywhere in a few of all orientations.
+        // Look everywhere in a few of all orientations.
         candidates_.clear();
         for (uint32_t k = 0; k < std::min(kTurns, count); ++k) {
             const uint32_t o = count <= kTurns ? k : random_(count);
@@ -367,7 +366,7 @@ PieceLayout squeeze(const std::vector<Shape>& shapes, PieceLayout layout, const 
     const double aspect = static_cast<double>(layout.width) / layout.height;
     uint32_t lines = 8;
     bool failed = false;
-    // The rectangle keeps its shape for as long as that goes well; then either side will do.
+    // The rectangle keeps its shape until that fails. Then either side may shrink.
     const auto shrinks_width = [&](const PieceLayout& now) {
         const double limit = 0.9 * options.most_aspect, ratio = static_cast<double>(now.width) / now.height;
         if (ratio > limit || ratio < 1 / limit) return ratio > 1;

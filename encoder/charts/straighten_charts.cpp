@@ -66,7 +66,7 @@ class Straightener {
         return valence;
     }
 
-    // Cut-paths as half-edges, seen from the chart with the smaller number.
+    // Returns cut-paths as half-edges, seen from the chart with the smaller number.
     std::vector<std::vector<uint32_t>> find_paths() const {
         std::vector<std::vector<uint32_t>> paths;
         for (uint32_t h = 0; h < topology_.twin.size(); ++h) {
@@ -84,14 +84,15 @@ class Straightener {
         return paths;
     }
 
-    // Paths found at the start of a pass may have been left behind by a neighbour's change; those wait for the next.
+    // Returns whether a path still lies between a and b. A neighbour's change may have moved them since the pass began;
+    // then the path waits for the next pass.
     bool is_current(const std::vector<uint32_t>& path, uint32_t a, uint32_t b) const {
         return std::all_of(path.begin(), path.end(), [&](uint32_t h) {
             return label_[face_of(h)] == a && label_[face_of(topology_.twin[h])] == b;
         });
     }
 
-    // The vertices near the path that are inside the two charts, or on the path.
+    // Marks and returns the vertices near the path that are inside the two charts, or on the path.
     std::vector<uint32_t> mark_band(const std::vector<uint32_t>& path, uint32_t a, uint32_t b, double width) {
         std::vector<uint32_t> reached;
         std::priority_queue<Entry> queue;
@@ -122,7 +123,7 @@ class Straightener {
         return reached;
     }
 
-    // Cheapest path through the band from the path's begin to its end; empty when there is none.
+    // Finds the cheapest path through the band from the path's begin to its end. Empty if there is none.
     std::vector<uint32_t> cheapest(uint32_t begin, uint32_t end, uint32_t a, uint32_t b) {
         std::vector<uint32_t> reached{begin}, found;
         std::priority_queue<Entry> queue;
@@ -172,14 +173,14 @@ class Straightener {
         relabel(path, better, a, b);
     }
 
-    // Faces of both charts on the left of the new path become a's, the others b's; undone when that breaks a disk.
+    // Gives the faces of both charts on the left of the new path to a, the others to b. Undoes it if a disk breaks.
     void relabel(const std::vector<uint32_t>& old_path, const std::vector<uint32_t>& path, uint32_t a, uint32_t b) {
         std::vector<uint32_t> both = faces_[a];
         both.insert(both.end(), faces_[b].begin(), faces_[b].end());
         enum : uint8_t { kOutside, kUnknown, kLeft };
         if (side_.empty()) side_.assign(label_.size(), kOutside), wall_.assign(topology_.twin.size(), 0);
         for (const uint32_t f : both) side_[f] = kUnknown;
-        // Walls: the new path, and all of the old border between the two charts except the old path.
+        // Walls are the new path, and all of the old border between the two charts except the old path.
         std::vector<uint32_t> walls;
         const auto set_wall = [&](uint32_t h) {
             for (const uint32_t k : {h, topology_.twin[h]}) {
@@ -228,12 +229,13 @@ class Straightener {
         for (const uint32_t h : old_path) wall_[h] = wall_[topology_.twin[h]] = 0;
     }
 
-    // Connected by construction or not: Euler characteristic 1, one border loop, every vertex in a single fan.
+    // Returns whether the faces make a disk: Euler characteristic 1, one border loop, every vertex in a single fan.
+    // Does not assume that they are connected.
     bool is_disk(const std::vector<uint32_t>& faces, uint32_t chart) {
         int64_t euler = static_cast<int64_t>(faces.size());
         int64_t border = 0;
         uint32_t start = kNone;
-        std::unordered_map<uint32_t, uint32_t> fans;  // per vertex: borders that leave it
+        std::unordered_map<uint32_t, uint32_t> fans;  // per vertex: border half-edges that leave it
         for (const uint32_t f : faces) {
             for (uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
                 uint32_t& count = fans[from(mesh_, h)];

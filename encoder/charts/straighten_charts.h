@@ -1,12 +1,12 @@
 // Makes the borders between charts shorter: every cut-path becomes the shortest edge path between its two cut-nodes
-// inside a band around it, creases counting as shorter than they are.
+// inside a band around it. Creases count as shorter than they are.
 //
-// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003, section 4.1 speaks of straightening for
-// their older method only. Lloyd-Max borders follow the triangulation and the noise of a scan: straight ones pack more
-// tightly, spend fewer samples on seams, and keep flattened charts from touching themselves.
+// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.1 mentions straightening only
+// for their older method. Lloyd-Max borders follow the triangulation and the noise of a scan. Straight borders pack
+// more tightly, spend fewer samples on seams, and keep flattened charts from touching themselves.
 //
-// In:  charts that are disks with simple borders. Out: the same number of charts, still such disks (a change that would
-//      break one is left out). Cost: O(passes * sum of the charts' sizes). Deterministic.
+// In:  charts that are disks with simple borders. Out: as many such charts; changes that break a disk are left out.
+// Cost: O(passes * sum of the charts' sizes). Deterministic.
 #pragma once
 
 #include "encoder/charts/chartify.h"
@@ -15,8 +15,8 @@ namespace gim {
 
 struct StraightenChartsOptions {
     double band = 0.07;   // half-width of the band, in square roots of the smaller chart's area
-    double crease = 4.0;  // a right-angled crease counts 1 / (1 + this) of its length; 0: length alone
-    int passes = 2;       // paths see each other's new places in the second
+    double crease = 4.0;  // a right-angled crease counts 1 / (1 + this) of its length; 0: only length counts
+    int passes = 2;       // in the second, paths see each other's new places
 };
 
 void straighten_charts(const Mesh& mesh, const Topology& topology, const StraightenChartsOptions& options,

@@ -1,4 +1,4 @@
-// Charts as a file holds them: chart table, borders and zippers, and the levels of all charts.
+// Writes charts as a file holds them: chart table, borders and zippers, and the levels of all charts.
 // spec/gim-format.md, "Charts".
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace gim {
 
-// parameters.base_side does not matter: the levels are those of the charts. An Error names the chart that does not fit.
+// Ignores parameters.base_side: the charts have their levels already. An Error names the chart that does not fit.
 Result<FileWriter> charts_writer(const ChartLevels& images, const CodingParameters& parameters);
 
 }  // namespace gim

@@ -15,12 +15,13 @@ namespace gim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Cost of a point's first further sample, in squared mean spacings; the second costs three times as much, and so on.
+// Cost of a point's first further sample, in squared mean spacings. The second costs three times as much, the third
+// five times, and so on.
 constexpr double kSingleStep = 0.5;
 // Least distance between unified points along a path, in mean spacings.
 constexpr double kLeastSpacing = 0.3;
 
-// A cut-path as a curve: arc length from its begin node along the surface.
+// A cut-path as a curve, with its arc length from the begin node along the surface.
 struct Curve {
     std::vector<Vec2> map;  // in samples of the image
     std::vector<Vec3> surface;
@@ -43,7 +44,7 @@ Curve curve_of(const Chart& chart, const ChartMap& map, const ChartPose& pose, s
     return curve;
 }
 
-// Where on the curve, as a part of its length, the point closest to p in the map lies.
+// Finds the point of the curve closest to p in the map. Returns where it lies, as a part of the curve's length.
 double project(const Curve& curve, const Vec2& p) {
     double nearest = kInfinity, at = 0;
     for (size_t k = 0; k + 1 < curve.map.size(); ++k) {
@@ -69,12 +70,13 @@ Vec3 point_at(const Curve& curve, double part) {
 
 // ---- cut-nodes ----------------------------------------------------------------------------------------------------
 
-// The loop index of each node's sample: in order around the loop, `gap` apart at least, least sum of squared distances.
-// Empty when the loop is too short. Index k of the result lies within one turn after that of the first node.
+// Finds a sample for each node and returns its index in the loop. Samples keep the order of the nodes, lie at least
+// `gap` apart, and have the least sum of squared distances. Indices count on past the loop's end: all lie within one
+// turn after the first. Empty if the loop is too short.
 std::vector<uint32_t> place_nodes(const std::vector<Vec2>& nodes, const std::vector<Vec2>& loop, uint32_t gap) {
     const auto count = static_cast<uint32_t>(nodes.size()), length = static_cast<uint32_t>(loop.size());
     if (uint64_t{count} * gap > length) return {};
-    // The first node goes to one of the samples nearest to it; the others follow by dynamic programming.
+    // The first node goes to one of the samples nearest to it. The others follow by dynamic programming.
     std::vector<uint32_t> starts(length);
     for (uint32_t i = 0; i < length; ++i) starts[i] = i;
     std::stable_sort(starts.begin(), starts.end(), [&](uint32_t a, uint32_t b) {
@@ -86,7 +88,7 @@ std::vector<uint32_t> place_nodes(const std::vector<Vec2>& nodes, const std::vec
     std::vector<uint32_t> best;
     std::vector<std::vector<uint32_t>> choice(count, std::vector<uint32_t>(length, kNone));
     for (const uint32_t start : starts) {
-        // cost[j]: of the nodes so far when the last is at offset j or before; choice: at which offset it then is.
+        // cost[j]: of the nodes so far if the last is at offset j or before. choice: the offset at which it then is.
         std::vector<double> cost(length, (loop[start] - nodes[0]).squaredNorm()), next_cost(length);
         std::fill(choice[0].begin(), choice[0].end(), 0);
         for (uint32_t k = 1; k < count; ++k) {
@@ -118,20 +120,20 @@ std::vector<uint32_t> place_nodes(const std::vector<Vec2>& nodes, const std::vec
 
 // ---- zipper -------------------------------------------------------------------------------------------------------
 
-// The lock-step traversal that moves samples least. t and u: where the samples of both sides are along the curve, from
-// the begin node to the end node, both included; u in the first side's direction. A point takes one sample of either
-// side and then up to `most_extra` more of one of them.
+// Finds the lock-step traversal that moves samples least. Empty if there is none. t and u: where the samples of the two
+// sides lie along the curve, from begin node to end node, both included; u runs in the first side's direction. A point
+// takes one sample of each side, and then up to `most_extra` more of one side.
 std::vector<ZipStep> best_zipper(const std::vector<double>& t, const std::vector<double>& u, size_t most_extra) {
     const size_t rows = t.size(), columns = u.size();
     const double spacing = 1.0 / static_cast<double>(std::max(rows, columns) - 1);
     const double single = kSingleStep * spacing * spacing;
     struct Cell {
         double cost = kInfinity;
-        int32_t extra = 0;  // further samples of the last point: of the first side, or (negative) of the second
+        int32_t extra = 0;  // further samples of the last point: of the first side if positive, else of the second
     };
     std::vector<Cell> cells(rows * columns);
     const auto apart = [&](size_t i, size_t j) { return (t[i] - u[j]) * (t[i] - u[j]); };
-    // From the cell before a point, (i, j) being the point's first samples, to all ways in which the point may go on.
+    // Tries all ways in which a point may go on. (i, j): the point's first samples. cost: of the cell before it.
     const auto extend = [&](double cost, size_t i, size_t j) {
         cost += apart(i, j);
         const auto offer = [&](size_t x, size_t y, double total, int32_t extra) {
@@ -172,7 +174,7 @@ std::vector<ZipStep> best_zipper(const std::vector<double>& t, const std::vector
     return steps;
 }
 
-// Makes values rise from 0 (first) to 1 (last) with a least step, moving them as little as it takes (least squares, pool
+// Makes values rise from 0 (first) to 1 (last) with a least step. Moves them as little as possible (least squares, pool
 // adjacent violators).
 void spread(std::vector<double>& values) {
     const size_t count = values.size();
@@ -235,7 +237,7 @@ class Zipper {
         }
     }
 
-    // Tells which border belongs to which chart.
+    // Finds out which border belongs to which chart.
     Result<void> find_loops() {
         loops_ = trace_borders(image_.mask);
         loop_of_chart_.assign(charts_.size(), kNone);
@@ -271,7 +273,7 @@ class Zipper {
         return {};
     }
 
-    // Samples of a path, both nodes included.
+    // Returns the samples of a path, both nodes included.
     std::vector<uint32_t> samples_of(uint32_t c, uint32_t p) const {
         const std::vector<uint32_t>& loop = loops_[loop_of_chart_[c]];
         const std::vector<uint32_t>& at = node_at_[c];
@@ -306,7 +308,7 @@ class Zipper {
         }
     }
 
-    // Where samples lie along a curve; the nodes at its ends.
+    // Returns where samples lie along a curve (0..1). The nodes lie at its ends.
     std::vector<double> parts_of(const std::vector<uint32_t>& samples, const Curve& curve) const {
         std::vector<double> parts;
         for (const uint32_t i : samples) parts.push_back(project(curve, place_of(i)));
@@ -336,9 +338,9 @@ class Zipper {
         std::reverse(u.begin(), u.end());
         for (double& x : u) x = 1 - x;
         std::vector<ZipStep>& steps = image_.seams.zippers[zipper_of_path_[number]];
-        // Long runs of samples in one point make folds; where one side is many times longer there is no way round them.
+        // Long runs of samples in one point make folds. They cannot be avoided if one side is many times longer.
         for (size_t most_extra = 5; steps.empty(); most_extra *= 4) steps = best_zipper(t, u, most_extra);
-        // Unified points along the path: where they are on the mean, and which samples they hold.
+        // Unified points along the path: their mean positions, and the samples they hold.
         std::vector<double> parts{0};
         std::vector<double> weight{2};
         std::vector<std::vector<uint32_t>> members{{own[0], other[0]}};
