@@ -17,7 +17,7 @@ using CutEdges = std::vector<uint8_t>;
 // A directed run of boundary edges of M' between two cut-nodes.
 struct BoundaryPath {
     uint32_t first = 0;  // index into OpenedMesh::loop of its first vertex; it ends where the next path begins
-    int32_t mate = -1;   // index of the path on the other side of the cut, which runs backwards; -1: input boundary
+    int32_t mate = -1;   // index of the path on the other side of the cut, which runs the other way; -1: input boundary
     uint32_t begin_node = 0, end_node = 0;  // cut-nodes: vertices of M
 };
 

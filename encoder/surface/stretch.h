@@ -3,7 +3,7 @@
 // Sander, Snyder, Gortler, Hoppe. Texture Mapping Progressive Meshes. SIGGRAPH 2001, section 3. For a triangle with
 // corners p0 p1 p2 in uv and q0 q1 q2 in space, the squared singular values of the map uv -> surface sum to
 //     a + c = N / D^2,   D = 2 * signed area in uv,   N = sum_i |q_j - q_k|^2 * -(e_j . e_k),   e_i = p_k - p_j,
-// so the squared L2 stretch is N / (2 D^2). It has no bound as a triangle flattens. Its minimiser therefore has no flips.
+// so the squared L2 stretch is N / (2 D^2). It is unbounded as a triangle flattens, so its minimiser has no flips.
 #pragma once
 
 #include <array>
