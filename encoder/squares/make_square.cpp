@@ -40,8 +40,7 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
     uint32_t number = 0;
     for (size_t i = 0; i < found.steps.size(); ++i) {
         const AugmentStep& step = found.steps[i];
-        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut)
-            continue;  // the next step has the same cut, judged
+        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut) continue;  // the next step only judges it
         const auto opened = open_mesh(found.searched, topology, step.cut);
         if (!opened.ok()) continue;
         char name[32];
