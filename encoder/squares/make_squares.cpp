@@ -27,7 +27,7 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
     return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
 }
 
-// Doubles the side, up to `most`, if the cut needs more room than the component's area deserves.
+// Makes the image. Doubles its side, up to `most`, if the cut needs more room than the component's area deserves.
 Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
                                      const CutPreference& preference, StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {

@@ -61,8 +61,8 @@ CutCounts count_opened(const Mesh& mesh, const Topology& topology, const CutEdge
 }  // namespace
 
 bool opens_to_disk(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
-    // A connected surface with one boundary loop and Euler characteristic 1 is a disk. It is connected if both hold: a
-    // second component would bring a loop of its own, or a closed surface of another characteristic.
+    // A connected surface with one boundary loop and Euler characteristic 1 is a disk. If both hold, the opened surface
+    // is connected: a second component would bring a loop of its own, or a closed surface of another characteristic.
     const CutCounts counts = count_opened(mesh, topology, cut);
     return counts.first != kNone && counts.loop_length == counts.boundary_half_edges && counts.euler == 1;
 }

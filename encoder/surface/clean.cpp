@@ -209,10 +209,10 @@ bool run_same_way(const std::vector<Triangle>& triangles, uint32_t h, uint32_t g
 }
 
 // Says for each face whether it must be turned, so that each component is consistent with its first face.
-// `contradiction` is set if a walk around the surface comes back turned over.
+// `contradiction` is the edge where a walk around the surface comes back turned over, if there is one.
 struct Turning {
     std::vector<bool> turn;
-    uint32_t contradiction = kNone;  // an edge
+    uint32_t contradiction = kNone;
 };
 
 Turning find_turning(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
