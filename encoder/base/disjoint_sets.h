@@ -1,4 +1,4 @@
-// Union-find over 0 .. count-1; the representative of a set is its smallest member, whatever the order of the unions.
+// Union-find over 0 .. count-1. The smallest member represents a set, whatever the order of the unions.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The boundary of the library: threads are set, and nothing that is thrown leaves a public function.
+// Guards the public functions of the library: sets the number of threads and lets no exception out.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -11,7 +11,7 @@
 
 namespace gim {
 
-// Runs body on `threads` threads (0: all cores) and turns what it throws into an Error: nothing leaves a public function.
+// Runs `body` on `threads` threads (0: all cores). Turns exceptions into an Error.
 template <class Body>
 Result<Encoded> guarded(uint32_t threads, const Body& body) {
     try {

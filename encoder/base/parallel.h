@@ -11,7 +11,7 @@
 
 namespace gim {
 
-// Runs `work` where parallel loops use at most that many threads; 0: stays where it is.
+// Runs `work`. Parallel loops in it use at most `threads` threads. 0: keeps the limit of the caller.
 template <class Work>
 void with_threads(uint32_t threads, const Work& work) {
     if (threads == 0) {
@@ -21,8 +21,8 @@ void with_threads(uint32_t threads, const Work& work) {
     }
 }
 
-// Calls body(block, begin, end) once for every block of `block_size` indices of [0, count), in any order and
-// concurrently. threads = 0: all cores.
+// Calls body(block, begin, end) once for every block of `block_size` indices of [0, count), concurrently and in any
+// order. `threads`: as for with_threads().
 template <class Body>
 void parallel_blocks(size_t count, size_t block_size, uint32_t threads, const Body& body) {
     const size_t blocks = (count + block_size - 1) / block_size;
@@ -34,7 +34,7 @@ void parallel_blocks(size_t count, size_t block_size, uint32_t threads, const Bo
     with_threads(threads, [&] { tbb::parallel_for(size_t{0}, blocks, run); });
 }
 
-// Sum of term(i) over [0, count): blocks in parallel, then the block sums in order.
+// Returns the sum of term(i) over [0, count). Adds up blocks in parallel, then the block sums in order.
 template <class Term>
 double parallel_sum(size_t count, uint32_t threads, const Term& term) {
     constexpr size_t kBlock = 4096;

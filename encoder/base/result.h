@@ -1,4 +1,4 @@
-// Errors of the encoder: what failed, in which stage, at which element, and what to do about it.
+// Passes errors of the encoder on. They say what failed, in which stage, at which element, and what to do about it.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace gim {
     if (!name##_result.ok()) return name##_result.error(); \
     auto& name = name##_result.value()
 
-// Returns the error of a Result<void>, or goes on.
+// Returns the error of a Result<void>, or continues.
 #define GIM_CHECK(expression) \
     if (auto checked_result = (expression); !checked_result.ok()) return checked_result.error()
 

@@ -1,4 +1,4 @@
-// Times the stages of a run and tells the caller where it is.
+// Times the stages of a run and reports its progress to the caller.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class StageClock {
   public:
     explicit StageClock(Progress progress) : progress_(std::move(progress)) {}
 
-    // Ends the running stage and begins the next. Time of a stage that comes several times is added up.
+    // Ends the running stage and begins the next. If a stage runs several times, its times add up.
     void begin(Stage stage) {
         end();
         running_ = true;
@@ -38,7 +38,7 @@ class StageClock {
     void report(double fraction) const {
         if (progress_) progress_(stage_, fraction);
     }
-    // For stages that report by themselves.
+    // Returns a callback for stages that report their own progress.
     Progress progress() const {
         return [this](Stage, double fraction) { report(fraction); };
     }

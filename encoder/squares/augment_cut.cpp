@@ -21,16 +21,16 @@ struct Surface {
     const Topology& topology;
 };
 
-// A cut with the map to the square that it allows. Efficiency and merit 0: none was found.
+// A cut and its map to the square. Efficiency and merit are 0 if no map was found.
 struct State {
     CutEdges cut;
     double efficiency = 0;
-    double merit = 0;        // efficiency less the price of cut-paths
+    double merit = 0;        // efficiency, reduced by the price of cut-paths
     uint32_t worst = kNone;  // the vertex off the cut where this map stretches most
     std::vector<AugmentStep> steps;
 };
 
-// The vertex off the cut at the triangle of greatest stretch; kNone when there is none.
+// Returns the vertex off the cut that lies on the triangle of greatest stretch; kNone if there is none.
 uint32_t most_stretched(const Surface& surface, const OpenedMesh& disk, const std::vector<Vec2>& uv,
                         const CutEdges& cut) {
     const std::vector<uint32_t> valence = cut_valence(surface.mesh, surface.topology, cut);
@@ -53,7 +53,7 @@ uint32_t most_stretched(const Surface& surface, const OpenedMesh& disk, const st
     return worst;
 }
 
-// Maps the surface to the square along this cut.
+// Maps the surface to the square along the state's cut and rates the map.
 void judge(const Surface& surface, const AugmentOptions& options, State& state) {
     state.efficiency = state.merit = 0;
     auto opened = open_mesh(surface.mesh, surface.topology, state.cut);
@@ -68,8 +68,8 @@ void judge(const Surface& surface, const AugmentOptions& options, State& state) 
     state.worst = most_stretched(surface, boundary.opened, uv.value(), state.cut);
 }
 
-// The vertex off the cut at the triangle of greatest stretch under the circle map; kNone when every vertex is on the
-// cut.
+// Returns the vertex off the cut that lies on the triangle of greatest stretch under the circle map. kNone if every
+// vertex is on the cut.
 uint32_t find_extremum(const Surface& surface, const CutEdges& cut) {
     const auto opened = open_mesh(surface.mesh, surface.topology, cut);
     if (!opened.ok()) return kNone;
@@ -77,7 +77,7 @@ uint32_t find_extremum(const Surface& surface, const CutEdges& cut) {
     return uv.empty() ? kNone : most_stretched(surface, opened.value(), uv, cut);
 }
 
-// The vertex farthest from the cut along edges.
+// Returns the vertex farthest from the cut, along edges.
 uint32_t find_farthest(const Surface& surface, const CutEdges& cut) {
     std::vector<uint32_t> sources;
     const std::vector<uint32_t> valence = cut_valence(surface.mesh, surface.topology, cut);
@@ -89,7 +89,7 @@ uint32_t find_farthest(const Surface& surface, const CutEdges& cut) {
     return *farthest > 0 ? static_cast<uint32_t>(farthest - distance.begin()) : kNone;
 }
 
-// The shortest path from the cut to v, added to the cut.
+// Adds the shortest path from the cut to v.
 CutEdges extend_cut(const Surface& surface, const CutEdges& cut, uint32_t v) {
     const std::vector<uint32_t> valence = cut_valence(surface.mesh, surface.topology, cut);
     std::vector<uint8_t> on_cut(valence.size()), off_cut(valence.size());
@@ -106,7 +106,7 @@ CutEdges edges_at(const Surface& surface, uint32_t v) {
     return cut;
 }
 
-// Closed surface of genus 0: start over from the first extremum, then cut from there to the second.
+// For closed surfaces of genus 0: starts again at the first extremum and cuts from there to the second.
 CutEdges restart_at_extremum(const Surface& surface, const CutEdges& cut, std::vector<AugmentStep>& steps) {
     const uint32_t first = find_extremum(surface, cut);
     if (first == kNone) return cut;
@@ -132,9 +132,9 @@ bool is_sphere(const Surface& surface) {
     return closed && static_cast<int64_t>(surface.mesh.positions.size()) - faces / 2 == 2;
 }
 
-// Where the next augmentation goes.
+// The vertex that the next augmentation goes to.
 enum class Aim {
-    kCircleMap,  // greatest stretch under the circle map: the paper's
+    kCircleMap,  // greatest stretch under the circle map, as in the paper
     kSquareMap,  // greatest stretch under the current map to the square
     kFarthest,   // greatest distance from the cut
 };
@@ -151,7 +151,7 @@ uint32_t pick(const Surface& surface, const State& state, Aim aim) {
     return kNone;
 }
 
-// The best cut on the way that follows one aim throughout.
+// Follows one aim throughout and returns the best cut on the way.
 State follow(const Surface& surface, const AugmentOptions& options, const State& start, Aim aim) {
     State best = start, trial = start;
     for (uint32_t i = 0, misses = 0; i < options.most_paths && misses < options.patience; ++i) {
@@ -167,7 +167,7 @@ State follow(const Surface& surface, const AugmentOptions& options, const State&
     return best;
 }
 
-// Faces spread over the surface, each far from those before.
+// Returns faces spread over the surface, each far from those before it.
 std::vector<uint32_t> spread_seeds(const Surface& surface, uint32_t count) {
     std::vector<uint32_t> seeds{0}, vertices{surface.mesh.triangles[0][0]};
     while (seeds.size() < count) {
@@ -179,7 +179,7 @@ std::vector<uint32_t> spread_seeds(const Surface& surface, uint32_t count) {
     return seeds;
 }
 
-// The best initial cut: any seed gives one, and on surfaces of higher genus they differ much.
+// Returns the best initial cut. Every seed gives one; on surfaces of higher genus they differ much.
 State start_cut(const Surface& surface, const AugmentOptions& options) {
     const bool sphere = is_sphere(surface);
     const std::vector<uint32_t> seeds = spread_seeds(surface, sphere ? 1 : options.seeds);
@@ -200,7 +200,7 @@ State start_cut(const Surface& surface, const AugmentOptions& options) {
                              [](const State& a, const State& b) { return a.merit < b.merit; });
 }
 
-// Follows every aim from the same start and keeps the best; again from there, as long as it helps.
+// Follows every aim from the same start and keeps the best cut. Repeats this from there as long as it helps.
 State search(const Surface& surface, const AugmentOptions& options, const Progress& progress) {
     State best = start_cut(surface, options);
     constexpr std::array<Aim, 3> kAims{Aim::kCircleMap, Aim::kSquareMap, Aim::kFarthest};
@@ -217,8 +217,8 @@ State search(const Surface& surface, const AugmentOptions& options, const Progre
     return best;
 }
 
-// Carries a cut of the coarse mesh to the full one: at every vertex split the cut stays the same curve up to a slide
-// across the faces that come back, so it still opens the surface into a disk.
+// Carries a cut of the coarse mesh to the full one. At every vertex split the cut stays the same curve, up to a slide
+// across the faces that come back. It therefore still opens the surface into a disk.
 class CutRefiner {
   public:
     CutRefiner(ProgressiveMesh& mesh, CutEdges cut) : mesh_(mesh), cut_(std::move(cut)) {}
@@ -232,8 +232,8 @@ class CutRefiner {
     void refine() {
         const VertexSplit split = mesh_.split();
         const uint32_t h = split.edge, t = mesh_.twin(h);
-        // Edges that the collapse merged: vertex-left with into-left, vertex-right with into-right. Where the outer
-        // twin is missing the merged edge was an input boundary, which needs no mark.
+        // The collapse merged edge vertex-left with into-left, and vertex-right with into-right. If the outer twin is
+        // missing, the merged edge was an input boundary, which needs no mark.
         const bool left = take(prev(h)) | take(next(h)), right = take(next(t)) | take(prev(t));
         set(h, 0);
         bool moved = false, stayed = false;
@@ -243,7 +243,7 @@ class CutRefiner {
         const bool end =
             !stayed && int(left) + int(right) + count(split.vertex) == 1;  // an extremum stays at its vertex
         if (stayed || end) {
-            // The merged edges stay with `into`; what moved hangs on by the edge between the two.
+            // The merged edges stay with `into`. The edge between the two connects them to what moved.
             if (left) set(next(h), 1);
             if (right) set(prev(t), 1);
             if (moved) set(h, 1);

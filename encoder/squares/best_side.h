@@ -1,4 +1,4 @@
-// Chooses among sides of the square by what the files take.
+// Chooses the side of the square: codes several and keeps the best file.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@ namespace gim {
 // Makes and codes images with these options.
 using EncodeOnce = std::function<Result<Encoded>(const EncodeOptions& options, const Observer& observer)>;
 
-// The file of the side that is asked for. Where options allow it and the target is coarse: also of half of it, and so on as long
-// as halving makes it better. The half comes first: cuts are chosen there, in a quarter of the time. Pictures are those of
-// the first. The times are those of all runs.
+// Codes the side that is asked for. If the options allow smaller sides and the target is coarse, also tries half of the
+// side, and goes on as long as halving makes the file better. Returns the best file. The half runs first, because it
+// chooses the cuts in a quarter of the time. Only the first run shows pictures. The times are those of all runs.
 Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& options, const StageClock& clock,
                               const Observer& observer);
 

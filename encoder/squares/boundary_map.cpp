@@ -13,8 +13,8 @@ namespace gim {
 
 namespace {
 
-// Shortest cut-path on the node grid. Of two paths between the same cut-nodes one needs a second edge, and a path that returns
-// to its own cut-node a third, or two edges would be the same.
+// Least lengths of cut-paths on the node grid. If two paths join the same cut-nodes, one needs a second edge. A path
+// that returns to its own cut-node needs three edges. Otherwise two edges would be the same.
 constexpr uint32_t kLeastParallelUnits = 2, kLeastLoopUnits = 3;
 
 // A cut-path with its mate, or an input boundary on its own.
@@ -62,8 +62,8 @@ double ring_length(const std::vector<PathPair>& pairs) {
     return length;
 }
 
-// Gives every pair its share of `total` units, at least its least; largest remainders first. False when there are too
-// few.
+// Gives every pair its share of `total` units, but not less than its minimum; largest remainders first. Returns false
+// if there are too few units.
 bool allot(std::vector<PathPair>& pairs, uint32_t total) {
     const double length = ring_length(pairs);
     uint64_t reserved = 0;
@@ -91,7 +91,7 @@ bool allot(std::vector<PathPair>& pairs, uint32_t total) {
     return true;
 }
 
-// The part of the ring that pairs have got beyond their shares.
+// Returns the part of the ring that pairs got beyond their shares.
 double excess(const std::vector<PathPair>& pairs, uint32_t total) {
     const double length = ring_length(pairs);
     if (!(length > 0)) return 0;
@@ -100,7 +100,7 @@ double excess(const std::vector<PathPair>& pairs, uint32_t total) {
     return units / total;
 }
 
-// Valence-1 cut-nodes: where a path is followed by its own mate.
+// Returns the offsets of valence-1 cut-nodes. There a path is followed by its own mate.
 std::vector<uint32_t> leaf_offsets(const std::vector<CutPath>& paths) {
     std::vector<uint32_t> leaves;
     uint32_t at = 0;
@@ -111,15 +111,15 @@ std::vector<uint32_t> leaf_offsets(const std::vector<CutPath>& paths) {
     return leaves;
 }
 
-// Whether the node grid itself, glued so, is a surface. All finer levels are if it is.
+// Returns whether the node grid itself, glued this way, is a surface. If so, all finer levels are surfaces too.
 bool is_closed(const Sideband& sideband) {
     SeamTable seams;
     return sideband.paths.size() <= kMaxCutPaths && build_seam_table(sideband, &seams) == Status::kOk &&
            level_is_closed(seams, sideband.node_side);
 }
 
-// Rotates the layout so that every leaf is as far from the square's corners as possible; false if one must lie on a
-// corner, or if no rotation is closed.
+// Rotates the layout so that every leaf is as far from the square's corners as possible. Returns false if a leaf must
+// lie on a corner, or if no rotation is closed.
 bool choose_start(Sideband& sideband) {
     const uint32_t quarter = sideband.node_side - 1;
     const std::vector<uint32_t> leaves = leaf_offsets(sideband.paths);
@@ -160,7 +160,7 @@ Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& opt
                                           " image; take a larger --size, or --layout mcgim"};
 }
 
-// The boundary being laid out: the loop with an offset within its path for every vertex.
+// Lays the boundary out. Every vertex of the loop has an offset within its path.
 class BoundaryLayout {
   public:
     BoundaryLayout(OpenedMesh& opened, const Sideband& sideband, uint32_t side)
@@ -185,7 +185,7 @@ class BoundaryLayout {
         }
     }
 
-    // Writes the loop back into the opened mesh; returns the ring positions.
+    // Writes the loop back into the opened mesh and returns the ring positions.
     std::vector<double> finish(uint32_t side) {
         std::vector<double> ring;
         opened_.loop.clear();
@@ -205,7 +205,7 @@ class BoundaryLayout {
         double offset;  // samples from the path's begin
         uint32_t vertex;
     };
-    // Closer than this to a corner (in samples) a vertex is moved onto it instead of splitting a tiny edge off.
+    // A vertex closer than this to a corner (in samples) is moved onto it. Splitting would leave a tiny edge.
     static constexpr double kSnap = 1e-3;
 
     double length_of(size_t k) const { return double(sideband_.paths[k].length) * samples_per_unit_; }
@@ -231,7 +231,7 @@ class BoundaryLayout {
             for (Placed& placed : run) placed.offset *= length_of(k) / along;
             runs_.push_back(std::move(run));
         }
-        // Mates: the same offsets, mirrored bit for bit.
+        // Mates get the same offsets, mirrored bit for bit.
         for (size_t k = 0; k < runs_.size(); ++k) {
             const int32_t mate = opened_.paths[k].mate;
             if (mate < 0 || static_cast<size_t>(mate) < k) continue;
@@ -250,7 +250,7 @@ class BoundaryLayout {
         return runs_[(k + 1) % runs_.size()].front().vertex;
     }
 
-    // Makes sure that a vertex lies at `offset` of path k; returns the offset at which it lies.
+    // Makes sure that a vertex lies at `offset` of path k. Returns the offset at which it lies.
     double put_vertex(size_t k, double offset) {
         std::vector<Placed>& run = runs_[k];
         const auto after =
@@ -292,7 +292,7 @@ class BoundaryLayout {
     OpenedMesh& opened_;
     const Sideband& sideband_;
     uint32_t samples_per_unit_;
-    std::vector<std::vector<Placed>> runs_;  // per path: its vertices but the last, which begins the next path
+    std::vector<std::vector<Placed>> runs_;  // per path: its vertices without the last, which begins the next path
 };
 
 uint8_t sides_of(double p, uint32_t side) {
@@ -305,8 +305,8 @@ uint8_t sides_of(double p, uint32_t side) {
     return bits;
 }
 
-// Splits, at their middle, the interior edges that join two vertices of one side of the square. Rounds of splits in
-// disjoint faces, as a face may have several such edges, until none is left.
+// Splits interior edges that join two vertices of one side of the square, at their middle. A face may have several such
+// edges. Each round therefore splits edges of disjoint faces, until none is left.
 void split_chords(SquareBoundary& boundary) {
     Mesh& mesh = boundary.opened.mesh;
     std::vector<uint8_t>& sides = boundary.sides;

@@ -28,7 +28,7 @@ void for_each_at_once(std::vector<T>& all, const Body& body) {
     tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { body(all[i]); });
 }
 
-// Different cuts only.
+// Cuts the surface by every preference and returns the cuts that differ.
 std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
     const CuttableSurface surface = make_cuttable(mesh, options.side);
     std::vector<Candidate> attempts;

@@ -1,7 +1,7 @@
-// Chooses among several cuts of a surface, and the maps that go with them, by what their images cost.
+// Chooses among several cuts of a surface, with their maps, by the bytes that their images cost.
 //
-// Gu 2002 (section 3.2) judges a cut by the stretch of its map. That is a good guide on the way to a cut; but of cuts that were
-// sought with different preferences the least stretched is often not the one that codes best (spec/rationale.md).
+// Gu 2002 (section 3.2) judges a cut by the stretch of its map. Stretch guides the search for one cut well. But among
+// cuts found with different preferences, the least stretched often does not code best (spec/rationale.md).
 #pragma once
 
 #include <optional>
@@ -10,15 +10,15 @@
 
 namespace gim {
 
-// For files that are fitted to a PSNR or a size.
+// Returns true if the file is fitted to a PSNR or a size.
 bool may_choose_chart(const EncodeOptions& options);
 
 struct ChosenChart {
     SingleChart chart;
     CutPreference preference;
 };
-// In: a clean connected mesh, options of which may_choose_chart() is true. Nothing where no cut leads to an image of that side.
-// The same for any number of threads. Cost: about that of six images, and of six short fits.
+// `mesh` must be clean and connected, and may_choose_chart(options) true. Returns nothing if no cut leads to an image
+// of that side. The result is the same for any number of threads. Cost: about that of six images and six short fits.
 std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
 
 }  // namespace gim

@@ -18,7 +18,7 @@ void place_boundary(const OpenedMesh& opened, std::vector<Vec2>& uv) {
         const Vec3& b = opened.mesh.positions[opened.loop[(i + 1) % n]];
         along[i + 1] = along[i] + (b - a).norm();
     }
-    // A little of uniform spacing keeps coincident neighbours apart.
+    // A little uniform spacing keeps coincident neighbours apart.
     constexpr double kUniform = 1e-6;
     for (size_t i = 0; i < n; ++i) {
         const double uniform = double(i) / double(n);
@@ -27,7 +27,7 @@ void place_boundary(const OpenedMesh& opened, std::vector<Vec2>& uv) {
     }
 }
 
-// tan(angle / 2) at corner a of the triangle a b c, bounded so that slivers leave the system solvable.
+// Returns tan(angle / 2) at corner a of the triangle a b c. It is bounded, so that slivers leave the system solvable.
 double half_tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 u = b - a, v = c - a;
     const double lengths = u.norm() * v.norm();

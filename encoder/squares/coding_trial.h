@@ -1,4 +1,4 @@
-// What images of one surface cost when they are coded, found out by coding them.
+// Measures how many bytes images of one surface cost, by coding them.
 #pragma once
 
 #include "encoder/base/result.h"
@@ -11,12 +11,12 @@ namespace gim {
 
 class CodingTrial {
   public:
-    // Keeps the surface. options: with a PSNR or bytes to aim at; `example` tells about which quantizer that asks for. Cost: 5 to 15
-    // rounds of CodedFit.
+    // Keeps the surface. `options` must have a PSNR or a size as the target. Codes `example` to find out roughly which
+    // quantizer the target asks for. Cost: 5 to 15 rounds of CodedFit.
     CodingTrial(const Mesh& surface, const EncodeOptions& options, const SquareImage& example);
 
-    // Natural logarithm of the bytes that the image takes at one and the same PSNR, up to a constant of the trial, after a short
-    // fit to that quantizer. Cost: 5 rounds. May be called at once from several threads.
+    // Fits the image briefly to that quantizer and codes it. Returns the natural logarithm of its bytes, converted to
+    // the same PSNR for all images, up to a constant of the trial. Cost: 5 rounds. Several threads may call it at once.
     Result<double> log_bytes(const SquareImage& image) const;
 
   private:

@@ -14,12 +14,12 @@ Vec3 centroid(const Mesh& mesh, uint32_t f) {
     return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
 }
 
-// Phase 1: grows a disk from the seed, nearest triangle first. What is never crossed is the cut.
-// Returns the triangle reached last too: the farthest from the seed.
+// Phase 1: grows a disk from the seed, nearest triangle first. The edges that are never crossed are the cut.
+// `farthest` becomes the triangle that is reached last.
 CutEdges remove_triangles(const Mesh& mesh, const Topology& topology, uint32_t seed, uint32_t& farthest) {
     CutEdges cut(topology.twin.size(), 1);
     std::vector<double> distance(mesh.triangles.size(), kInfinity);
-    std::vector<uint32_t> entry(mesh.triangles.size(), kNone);  // the half-edge of the neighbour that was crossed
+    std::vector<uint32_t> entry(mesh.triangles.size(), kNone);  // the neighbour's half-edge that was crossed to enter
     std::vector<uint8_t> done(mesh.triangles.size(), 0);
     MinQueue queue;
     distance[seed] = 0;
@@ -71,8 +71,9 @@ std::vector<uint32_t> vertices_of(const Mesh& mesh, const std::vector<uint32_t>&
     return vertices;
 }
 
-// Every cut-path once (not its mate), as half-edges of M in order; input boundaries left out. Paths end at cut-nodes
-// and at fixed vertices. A path that returns to its own begin comes in two halves, so that its ends differ.
+// Returns every cut-path once, without its mate, as half-edges of M in order. Leaves out input boundaries. Paths end at
+// cut-nodes and at fixed vertices. A path that returns to its own begin is split in two halves, so that its ends
+// differ.
 std::vector<std::vector<uint32_t>> cut_paths(const Mesh& mesh, const Topology& topology, const CutEdges& cut,
                                              const std::vector<uint32_t>& fixed) {
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);
@@ -99,7 +100,7 @@ std::vector<std::vector<uint32_t>> cut_paths(const Mesh& mesh, const Topology& t
     return paths;
 }
 
-// A shorter replacement for `path` within `inside`, or an empty path.
+// Returns a shorter replacement for `path` within `inside`. Empty if there is none.
 std::vector<uint32_t> shorter_path(const Mesh& mesh, const Topology& topology, const CutEdges& rest,
                                    const std::vector<uint32_t>& path, std::vector<uint8_t> inside) {
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, rest);
@@ -111,7 +112,7 @@ std::vector<uint32_t> shorter_path(const Mesh& mesh, const Topology& topology, c
     return found;
 }
 
-// Boundary loop of each vertex, numbered from 0; kNone inside. Returns how many loops there are.
+// Finds the boundary loop of each vertex, numbered from 0; kNone inside. Returns the number of loops.
 uint32_t label_loops(const Mesh& mesh, const Topology& topology, std::vector<uint32_t>& loop) {
     loop.assign(mesh.positions.size(), kNone);
     uint32_t count = 0;
@@ -124,8 +125,8 @@ uint32_t label_loops(const Mesh& mesh, const Topology& topology, std::vector<uin
     return count;
 }
 
-// The shortest path that joins the two boundary loops of the surface opened along `rest`; empty when there are not two.
-// Faces keep their numbers when a mesh is split, so the half-edges are those of the mesh itself.
+// Returns the shortest path that joins the two boundary loops of the surface opened along `rest`. Empty if there are
+// not two. Faces keep their numbers when a mesh is split, so the half-edges are those of the mesh itself.
 std::vector<uint32_t> bridge_loops(const Mesh& mesh, const Topology& topology, const CutEdges& rest) {
     const SplitMesh split = split_along(mesh, topology, rest);
     const Topology opened = build_topology(split.mesh);
@@ -199,12 +200,12 @@ CutEdges straighten_cut(const Mesh& mesh, const Topology& topology, const CutEdg
 
 CutEdges shorten_cut(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
     constexpr int kMostPasses = 8;
-    constexpr double kLeastGain = 1e-3;  // of a path's length
+    constexpr double kLeastGain = 1e-3;  // as a part of the path's length
     CutEdges result = cut;
     for (int pass = 0; pass < kMostPasses; ++pass) {
         bool gained = false;
         for (const std::vector<uint32_t>& path : cut_paths(mesh, topology, result, {})) {
-            // An earlier exchange may have taken a part of this path, or given it a new cut-node in the middle.
+            // An earlier exchange may have removed a part of this path, or put a new cut-node in its middle.
             if (std::any_of(path.begin(), path.end(), [&](uint32_t h) { return !result[h]; })) continue;
             CutEdges rest = result;
             mark_path(topology, path, 0, rest);

@@ -13,7 +13,7 @@
 namespace gim {
 namespace {
 
-// Pairs of matching edges looked at, per ring edge; more means a ring that is mostly one point.
+// Most pairs of matching edges per ring edge. With more, the ring is mostly one point.
 constexpr size_t kMostPairsPerEdge = 64;
 
 Error error(std::string message) { return {Stage::kInput, std::move(message)}; }
@@ -50,7 +50,7 @@ SquareGrid resampled(const SquareGrid& image, uint32_t side) {
 // An ordered pair of ring edges; edge k runs from ring sample k to k+1.
 using EdgePair = std::pair<uint32_t, uint32_t>;
 
-// All pairs (e, f), e != f, with e's start at f's end and e's end at f's start, sorted.
+// Returns all pairs (e, f), e != f, with e's start at f's end and e's end at f's start, sorted.
 std::vector<EdgePair> matching_edges(const std::vector<Vec3>& ring, double tolerance) {
     const auto count = static_cast<uint32_t>(ring.size());
     const auto next = [count](uint32_t k) { return k + 1 == count ? 0 : k + 1; };
@@ -74,8 +74,8 @@ std::vector<EdgePair> matching_edges(const std::vector<Vec3>& ring, double toler
     return pairs;
 }
 
-// Per ring edge its mate or kNone: runs (e, f), (e+1, f-1), ... of matching pairs, longest first. A run ends where nothing
-// matches and at leaves, where it would come back.
+// Returns for each ring edge its mate, or kNone. Glues runs (e, f), (e+1, f-1), ... of matching pairs, longest first. A
+// run ends where nothing matches, and at leaves, where it would come back.
 std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t count) {
     struct Run {
         EdgePair first;
@@ -110,7 +110,8 @@ std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t co
     return mate;
 }
 
-// Cuts the ring into paths where the mates stop running on; a leaf, where an edge is glued to the next, ends one too.
+// Cuts the ring into paths where the run of mates breaks off. A leaf, where an edge is glued to the next, also ends
+// one.
 Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
     const auto count = static_cast<uint32_t>(mate.size());
     const auto begins_path = [&](uint32_t e) {
@@ -122,7 +123,7 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
     for (uint32_t e = 0; e < count; ++e) {
         if (begins_path(e)) starts.push_back(e);
     }
-    if (starts.empty()) return {};  // all open
+    if (starts.empty()) return {};  // the whole ring is open
 
     Sideband s;
     s.node_side = side;
@@ -141,7 +142,8 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
     return with_coarsest_node_grid(s);
 }
 
-// Signed volume between the surface and the middle of its samples; exact for a closed one, a fair sign for an open one.
+// Returns the signed volume between the surface and the middle of its samples. It is exact for a closed surface; for an
+// open one its sign is a fair guess.
 double signed_volume(const SquareGrid& image) {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : image.positions) middle += p / static_cast<double>(image.positions.size());

@@ -1,6 +1,6 @@
-// A geometry image of other people, a bare grid of points, becomes one of ours: the gluing of its ring is found by position.
-// There is nothing about this in Gu, Gortler, Hoppe 2002 but the remark (section 3.3) that such a search is error-prone: we
-// ask for runs of edges that match in both ends, longest first, instead of for equal points.
+// Turns a foreign geometry image, a bare grid of points, into one of ours. Finds the gluing of its ring by position.
+// Gu, Gortler, Hoppe 2002 only remark (section 3.3) that such a search is error-prone. We therefore look for runs of
+// edges that match at both ends, longest first, instead of equal points.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 namespace gim {
 
 // In:  side*side*3 floats, planar (all x, all y, all z), sample (row, column) at row * side + column.
-//      weld_tolerance: how far apart, in object units, two ring samples may be that are one surface point.
-// Out: side 2^j+1 (other sides are resampled bilinearly to the next larger one), mates welded to bit-equal positions,
-//      what matches nothing is a boundary of the surface, turned so that a closed surface has its outside outside.
-//      An Error names the sample or the side and tells what to do.
+//      weld_tolerance: two ring samples that are one surface point may be this far apart, in object units.
+// Out: an image of side 2^j+1; other sides are resampled bilinearly to the next larger one. Mates are welded to
+//      bit-equal positions. Ring edges that match nothing are a boundary of the surface. A closed surface faces
+//      outwards. An Error names the sample or the side and says what to do.
 // Cost: O(side^2 + ring log ring + matching pairs). Deterministic.
 Result<SquareImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance);
 
-// The gluing of the ring of an image as it is: every ring edge is glued to at most one other that runs the opposite way
-// between the same two points. Empty paths: nothing matches.
+// Finds the gluing of the ring and does not change the image. Glues every ring edge to at most one other, which runs
+// the opposite way between the same two points. Paths are empty if nothing matches.
 Sideband find_gluing(const SquareGrid& image, double weld_tolerance);
 
 }  // namespace gim

@@ -20,8 +20,8 @@ namespace gim {
 
 namespace {
 
-// Faces larger than this part of the surface are split before cutting: about 8 samples of the image, but neither so few faces
-// that the cut has no choice, nor so many that they cost more time than they are worth.
+// Faces larger than this part of the surface are split before cutting. It is about 8 samples of the image, within
+// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
 double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
 
 std::string percent(double part) {
@@ -34,13 +34,13 @@ Snapshot show_map(std::string name, std::string caption, const OpenedMesh& opene
     return make_snapshot(std::move(name), std::move(caption), opened.mesh, edges_of_loop(opened.loop), uv);
 }
 
-// The search for the cut, state by state.
+// Shows the search for the cut, state by state.
 void show_cut_search(const FoundCut& found, const Observer& observer) {
     const Topology topology = build_topology(found.searched);
     uint32_t number = 0;
     for (size_t i = 0; i < found.steps.size(); ++i) {
         const AugmentStep& step = found.steps[i];
-        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut) continue;  // only judged by the next
+        if (i + 1 < found.steps.size() && found.steps[i + 1].cut == step.cut) continue;  // the next step only judges it
         const auto opened = open_mesh(found.searched, topology, step.cut);
         if (!opened.ok()) continue;
         char name[32];

@@ -1,4 +1,5 @@
-// One connected surface -> one geometry image: the stages of Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002, in order.
+// Turns one connected surface into one geometry image. Runs these stages in order:
+// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +12,12 @@
 
 namespace gim {
 
-// What decides between cuts and their maps; which is best for coding differs from surface to surface.
+// Decides between cuts and their maps. Which preference codes best differs from surface to surface.
 struct CutPreference {
-    double most_excess =
-        0.1;  // BoundaryMapOptions: cut-nodes on a coarse grid, or each cut-path at its share of the boundary
-    double path_cost = 0.003;  // AugmentOptions: few cut-paths, or little stretch
-    uint32_t least_units = 1;  // BoundaryMapOptions: short cut-paths at their shares, or with room
+    // BoundaryMapOptions. High: cut-nodes lie on a coarse grid. Low: each cut-path gets its share of the boundary.
+    double most_excess = 0.1;
+    double path_cost = 0.003;  // AugmentOptions. High: few cut-paths. Low: little stretch.
+    uint32_t least_units = 1;  // BoundaryMapOptions. 1: short cut-paths get their shares. More: they get room.
 
     friend bool operator==(const CutPreference&, const CutPreference&) = default;
 };
@@ -25,20 +26,20 @@ struct SingleChart {
     SquareImage image;
     double cut_length = 0;           // object units
     double stretch_efficiency = 0;   // of the parametrization that was sampled
-    uint64_t flipped_triangles = 0;  // in it; 0 by construction, counted all the same
+    uint64_t flipped_triangles = 0;  // in that parametrization; 0 by construction, counted as a check
     uint64_t folds = 0;              // image faces that look away from the surface
     uint64_t folds_before_fit = 0;
 };
 
-// A clean connected mesh made ready for cuts, of which several may be tried.
+// A clean connected mesh, prepared for cutting. Several cuts may be tried on it.
 struct CuttableSurface {
-    Mesh mesh;  // large faces split
+    Mesh mesh;  // with large faces split
     Topology topology;
     CoarseSurface coarse;
 };
 CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side);
 
-// One that is cut open, its boundary on that of the square.
+// A surface that is cut open. Its boundary lies on that of the square.
 struct CutSurface {
     SquareBoundary boundary;
     double cut_length = 0;  // object units
@@ -47,11 +48,12 @@ Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions&
                             const CutPreference& preference, const Progress& progress = {},
                             const Observer& observer = {});
 
-// The rest. `mesh`: the surface as it came. `clock` takes the time of each stage, `observer` the states on the way.
+// Runs the stages after the cut. `mesh` is the surface before make_cuttable(). `clock` takes the time of each stage,
+// `observer` gets the states on the way.
 Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
                                    StageClock& clock, const Observer& observer = {});
 
-// All in a row. In: a clean connected mesh.
+// Runs all stages. `mesh` must be clean and connected.
 Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
                                         StageClock& clock, const Observer& observer = {});
 

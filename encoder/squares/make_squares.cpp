@@ -17,7 +17,8 @@ namespace gim {
 
 namespace {
 
-// Samples of a component's image per side: as dense as the largest component's image, to a power of two.
+// Returns the samples per side of a component's image. The image is as dense as that of the largest component, to a
+// power of two.
 uint32_t side_of_component(double area, double largest, uint32_t side) {
     constexpr int kLeastExponent = 4;
     const int most = std::countr_zero(side - 1);
@@ -26,7 +27,7 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
     return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
 }
 
-// A component whose cut needs more room than its area deserves gets it.
+// Makes the image. Doubles its side, up to `most`, if the cut needs more room than the component's area deserves.
 Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
                                      const CutPreference& preference, StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {
@@ -36,7 +37,7 @@ Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, ui
     }
 }
 
-// One component's. preference: known, or to be chosen and told.
+// Makes one component's chart. If `preference` is not known, it is set to the one that was chosen.
 Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
                                const Observer& observer, std::optional<CutPreference>& preference) {
     if (!preference && may_choose_chart(options) && options.side == most) {

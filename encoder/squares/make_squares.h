@@ -13,18 +13,19 @@
 
 namespace gim {
 
-// One image per component, and the surface that it was made of.
+// One image per component, and the surface that it was made from.
 struct Squares {
     std::vector<SquareImage> images;
     std::vector<Mesh> surfaces;
 };
 
-// Per component; nothing: not chosen yet.
+// One preference per component; nothing if it is not chosen yet.
 using CutPreferences = std::vector<std::optional<CutPreference>>;
 
-// In the order of the components' first faces; smaller components get smaller images. Adds its figures to the report.
-// Cuts of the largest components may be chosen among several by what their images cost, where files are to meet a PSNR
-// or a size. preferences: empty, or what an earlier call has chosen; tells what was chosen.
+// Makes the images in the order of the components' first faces. Smaller components get smaller images. Adds its figures
+// to the report. If the file must meet a PSNR or a size, the cuts of the largest components may be chosen among several
+// by the bytes that their images cost. `preferences` is empty, or what an earlier call chose; on return it holds what
+// was chosen.
 Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
                              const Observer& observer, EncodeReport& report, CutPreferences& preferences);
 

@@ -28,7 +28,7 @@ struct CutCounts {
     int64_t euler = 0;
 };
 
-// Vertices of M' without building it: a vertex with k sectors between cut edges gets k copies.
+// Counts M' without building it: a vertex with k sectors between cut edges gets k copies.
 CutCounts count_opened(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
     CutCounts counts;
     std::vector<uint32_t> sectors(mesh.positions.size(), 0);
@@ -61,9 +61,8 @@ CutCounts count_opened(const Mesh& mesh, const Topology& topology, const CutEdge
 }  // namespace
 
 bool opens_to_disk(const Mesh& mesh, const Topology& topology, const CutEdges& cut) {
-    // One boundary loop and Euler characteristic 1 leave, for a connected surface, only the disk. The complement of the
-    // cut is connected if so: a second component would bring a loop of its own or a closed surface of another
-    // characteristic.
+    // A connected surface with one boundary loop and Euler characteristic 1 is a disk. If both hold, the opened surface
+    // is connected: a second component would bring a loop of its own, or a closed surface of another characteristic.
     const CutCounts counts = count_opened(mesh, topology, cut);
     return counts.first != kNone && counts.loop_length == counts.boundary_half_edges && counts.euler == 1;
 }
@@ -78,8 +77,8 @@ SplitMesh split_along(const Mesh& mesh, const Topology& topology, const CutEdges
     };
     const auto corner = [&](uint32_t h) -> uint32_t& { return split.mesh.triangles[face_of(h)][h % 3]; };
 
-    // Each sector between two cut edges becomes one vertex: start at the half-edge with the cut on its right, walk
-    // left.
+    // Each sector between two cut edges becomes one vertex. The walk starts at the half-edge with the cut on its right
+    // and goes left.
     for (uint32_t h = 0; h < topology.twin.size(); ++h) {
         if (!is_cut(topology, cut, h)) continue;
         const uint32_t copy = add_copy(from(mesh, h));
@@ -115,7 +114,7 @@ Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const C
     opened.source = std::move(split.source);
     const auto corner = [&](uint32_t h) { return opened.mesh.triangles[face_of(h)][h % 3]; };
 
-    // A cut-node is where the cut's valence is not 2.
+    // A vertex is a cut-node if the cut's valence there is not 2.
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);
     std::vector<uint32_t> half_edges;
     half_edges.reserve(counts.loop_length);
@@ -127,7 +126,7 @@ Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const C
     const auto is_node = [&](size_t i) { return valence[from(mesh, half_edges[i])] != 2; };
     size_t start = 0;
     while (start < half_edges.size() && !is_node(start)) ++start;
-    const bool no_node = start == half_edges.size();  // a disk: its boundary is one path, started anywhere
+    const bool no_node = start == half_edges.size();  // a disk; its boundary is one path and may start anywhere
     std::rotate(half_edges.begin(), half_edges.begin() + static_cast<std::ptrdiff_t>(no_node ? 0 : start),
                 half_edges.end());
 

@@ -23,7 +23,7 @@ struct BoundaryPath {
 
 struct OpenedMesh {
     Mesh mesh;                        // M'
-    std::vector<uint32_t> source;     // per vertex of M': its vertex of M, or kNone for vertices inserted later
+    std::vector<uint32_t> source;     // per vertex of M': its vertex of M; kNone for vertices inserted later
     std::vector<uint32_t> loop;       // boundary vertices of M', faces on the left; starts at a cut-node
     std::vector<BoundaryPath> paths;  // in loop order
 };
@@ -31,23 +31,23 @@ struct OpenedMesh {
 // Fails unless M' is a disk: Euler characteristic 1, one boundary loop. O(F).
 Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
-// M' of any cut, disk or not: per vertex sector between cut edges one vertex. Faces and corners keep their numbers.
-// O(F).
+// M' of any cut, disk or not. Each sector between cut edges at a vertex becomes one vertex. Faces and corners keep
+// their numbers. O(F).
 struct SplitMesh {
     Mesh mesh;
     std::vector<uint32_t> source;  // per vertex: its vertex of the input mesh
 };
 SplitMesh split_along(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
-// Whether opening along `cut` gives a disk; the cheap test behind straightening. O(F).
+// Returns whether opening along `cut` gives a disk. Straightening relies on this cheap test. O(F).
 bool opens_to_disk(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
 inline bool is_cut(const Topology& topology, const CutEdges& cut, uint32_t h) {
     return topology.twin[h] == kNone || cut[h];
 }
-// The next boundary half-edge of M' after h, which is one itself.
+// Returns the boundary half-edge of M' that follows the boundary half-edge h.
 uint32_t next_on_cut(const Topology& topology, const CutEdges& cut, uint32_t h);
-// Number of cut edges at each vertex of M (input boundary edges count).
+// Returns the number of cut edges at each vertex of M. Input boundary edges count.
 std::vector<uint32_t> cut_valence(const Mesh& mesh, const Topology& topology, const CutEdges& cut);
 
 }  // namespace gim

@@ -15,8 +15,8 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kBaseInterior = 60;  // interior vertices of the base mesh, when collapses allow it
-constexpr int kBaseSweeps = 200;        // the base mesh is solved to convergence
+constexpr uint32_t kBaseInterior = 60;  // interior vertices of the base mesh, if collapses allow it
+constexpr int kBaseSweeps = 200;        // enough for the base mesh to converge
 constexpr double kLeastArea = 1e-3;     // smallest weight of a face, in mean face areas
 
 bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
@@ -30,7 +30,7 @@ bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
     return solve_tutte(arcs, fixed, uv);
 }
 
-// The map being optimised on a mesh that is refined step by step.
+// Optimises the map on a mesh that is refined step by step.
 class Optimiser {
   public:
     Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const std::vector<double>& importance,
@@ -46,7 +46,7 @@ class Optimiser {
         }
     }
 
-    // One pass over all interior vertices. Returns the energy's sum over stars before and after as (before, after).
+    // Makes one pass over all interior vertices. Returns the energy gained, as a part of the energy that is left.
     double sweep(int steps) {
         double gain = 0, total = 0;
         for (uint32_t v = 0; v < uv_.size(); ++v) {
@@ -65,8 +65,8 @@ class Optimiser {
         }
     }
 
-    // Puts a vertex that came back inside its star and relaxes its surroundings. False when no place keeps all faces
-    // upright.
+    // Puts a vertex that came back inside its star and relaxes its surroundings. Returns false if no place keeps all
+    // faces upright.
     bool insert(const VertexSplit& split) {
         mesh_.for_each_outgoing(split.vertex,
                                 [&](uint32_t h) { metric_[face_of(h)] = metric_of(face_of(h), least_area_); });

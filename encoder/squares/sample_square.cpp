@@ -9,7 +9,7 @@ namespace gim {
 
 namespace {
 
-// Row and column of ring sample p (order of format/sideband.h).
+// Returns the row and column of ring sample p (order of format/sideband.h).
 std::array<uint32_t, 2> ring_cell(uint32_t p, uint32_t side) {
     const uint32_t n = side - 1;
     if (p < n) return {0, p};
@@ -18,7 +18,7 @@ std::array<uint32_t, 2> ring_cell(uint32_t p, uint32_t side) {
     return {4 * n - p, 0};
 }
 
-// Samples along the opened boundary. A path with an earlier mate copies its mate's samples.
+// Takes the samples along the opened boundary. A path with an earlier mate copies its mate's samples.
 void sample_boundary(const SquareBoundary& boundary, SquareGrid& image) {
     const uint32_t side = image.side, total = 4 * (side - 1);
     const Sideband& sideband = boundary.sideband;

@@ -1,6 +1,5 @@
 // Samples the surface at the grid points of the square.
-// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3: the parametrization is evaluated at (i/(n-1),
-// j/(n-1)).
+// Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3: evaluates the parametrization at (i/(n-1), j/(n-1)).
 #pragma once
 
 #include <vector>
@@ -11,17 +10,17 @@
 
 namespace gim {
 
-// Where a sample lies on the opened mesh: the triangle and the barycentric coordinates in it.
+// The place of a sample on the opened mesh: a triangle and the barycentric coordinates in it.
 struct SurfacePoint {
     uint32_t triangle = kNone;
     std::array<double, 3> barycentric{};
 };
 
-// The triangle of uv under every grid point of a side x side image, row-major. Cost O(F + side^2).
+// Finds the triangle of uv under every grid point of a side x side image, row-major. O(F + side^2).
 std::vector<SurfacePoint> locate_samples(const Mesh& mesh, const std::vector<Vec2>& uv, uint32_t side);
 
-// One surface point per grid point. Samples of mates are bit-equal, cut-nodes are the mesh vertices themselves. Fails when
-// the node grid is finer than the image.
+// Takes one surface point per grid point. Samples of mates are bit-equal. Cut-nodes are the mesh vertices themselves.
+// Fails if the node grid is finer than the image.
 Result<SquareImage> sample_surface(const SquareBoundary& boundary, const std::vector<Vec2>& uv, uint32_t side);
 
 }  // namespace gim

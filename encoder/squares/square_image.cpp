@@ -13,7 +13,7 @@ namespace {
 
 Error bad_seams(const std::string& why) { return Error{Stage::kFit, "the image's seams are inconsistent: " + why}; }
 
-// Samples of the ring, in ring order.
+// Returns the samples of the ring, in ring order.
 std::vector<uint32_t> ring_samples(uint32_t side) {
     std::vector<uint32_t> samples(ring_length(side));
     for (uint32_t k = 0; k < samples.size(); ++k) {

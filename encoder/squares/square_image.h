@@ -1,4 +1,4 @@
-// A square becomes a geometry image: the sideband says which samples of its ring are one surface point.
+// Turns a square of samples into a geometry image. The sideband says which samples of its ring are one surface point.
 // Gu, Gortler, Hoppe. Geometry Images. SIGGRAPH 2002. Section 3.3 (the sideband).
 #pragma once
 
@@ -20,7 +20,7 @@ struct SquareGrid {
     Vec3& at(uint32_t row, uint32_t column) { return positions[size_t{row} * side + column]; }
 };
 
-// A geometry image on a square of side 2^j + 1, and the sideband that its gluing follows from.
+// A geometry image on a square of side 2^j + 1, and the sideband that defines its gluing.
 struct SquareImage : GeometryImage {
     Sideband sideband;  // empty paths: an open square
 
@@ -29,7 +29,7 @@ struct SquareImage : GeometryImage {
     Vec3& at(uint32_t row, uint32_t column) { return positions[size_t{row} * side() + column]; }
 };
 
-// Fails when the sideband does not describe the ring of an image of that side. O(side^2).
+// Both fail if the sideband does not describe the ring of an image of that side. O(side^2).
 Result<GridGluing> glue_ring(const Sideband& sideband, uint32_t side);
 Result<SquareImage> glue_square(SquareGrid grid, Sideband sideband);
 

@@ -15,7 +15,7 @@ constexpr size_t kBlock = 4096;
 
 int exponent_of(uint32_t side) { return std::countr_zero(side - 1); }
 
-// row, column: 0 .. side-1 each. Linear within a triangle of the cell.
+// Interpolates linearly within a triangle of the cell. `row` and `column` are in 0 .. side-1.
 Texel texel_at(const SquareImage& image, const std::vector<Vec3>& outside, double row, double column) {
     const CellPoint place = locate_in_cell(image.side(), row, column);
     const auto& [a, b, c, d] = place.corners;

@@ -72,7 +72,7 @@ class SquaresLayout final : public LayoutImages {
     void make_fits() {
         for (size_t i = fits_.size(); i < squares_.images.size(); ++i) {
             fits_.emplace_back(squares_.images[i], file_seams(squares_.images[i]), squares_.surfaces[i], seed_);
-            squares_.surfaces[i] = {};  // the fit has its own
+            squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }
 
@@ -80,7 +80,7 @@ class SquaresLayout final : public LayoutImages {
     uint64_t seed_;
     bool is_lossy_fit_;
     std::vector<CodedFit> fits_;  // one per image, made when needed
-    std::optional<Units> units_;  // of the first fit: what is fitted to a quantizer must meet the same steps again
+    std::optional<Units> units_;  // of the first fit; samples fitted to a quantizer must be coded with the same steps
 };
 
 }  // namespace

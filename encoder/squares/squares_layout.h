@@ -1,4 +1,4 @@
-// The layout gim for the drivers: squares, one per component, ready to be coded.
+// Offers the layout gim to the drivers: squares, one per component, ready to be coded.
 #pragma once
 
 #include <memory>

@@ -18,7 +18,7 @@ Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
 std::string image_name(size_t i) { return "image " + std::to_string(i); }
 
-// Whether the format can hold the images.
+// Says what is wrong. Empty if all is well.
 Result<void> check(std::span<const SquareImage> images, const CodingParameters& p) {
     if (images.empty()) return error("no image to write");
     if (images.size() > kMaxImages) return error(std::to_string(images.size()) + " images: a file holds at most 65536");
@@ -51,7 +51,7 @@ Result<void> check(std::span<const SquareImage> images, const CodingParameters& 
     return {};
 }
 
-// The squares' part of a file.
+// Codes the squares' part of a file.
 class SquareCoder final : public LevelCoder {
   public:
     SquareCoder(std::span<const SquareImage> images, const CodingParameters& parameters);
@@ -67,7 +67,7 @@ class SquareCoder final : public LevelCoder {
   private:
     void add_seams(const SquareImage& image);
     void set_levels(uint32_t base_side);
-    // Of an image whose mates share their details; else null.
+    // Returns the seams of an image if its mates share their details, otherwise null.
     const SeamTable* shared_seams(size_t image) const {
         return header_.tangential > 0 ? &seam_tables_[image] : nullptr;
     }
@@ -105,7 +105,7 @@ void SquareCoder::add_seams(const SquareImage& image) {
     seam_tables_.push_back(file_seams(image));
 }
 
-// From the base side up; levels that no image could close are left out.
+// Sets the levels, from the base side up. Leaves out levels that no image can close.
 void SquareCoder::set_levels(uint32_t base_side) {
     const uint32_t largest = *std::max_element(side_exponents_.begin(), side_exponents_.end());
     const uint32_t base =
@@ -124,8 +124,8 @@ void SquareCoder::set_levels(uint32_t base_side) {
 }
 
 std::vector<std::vector<uint8_t>> SquareCoder::code_levels(const Header& header) const {
-    // One stream per image and level it has; a level's payload is a table of sizes, left out for a single image, and
-    // these.
+    // Each image has one stream per level. A level's payload is a table of sizes, then its streams. The table is left
+    // out for a single image.
     std::vector<std::vector<uint8_t>> sizes(header.level_count), streams(header.level_count);
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         Pyramid<int32_t> bands = bands_.quantized(i, header, shared_seams(i));

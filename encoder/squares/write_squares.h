@@ -1,4 +1,4 @@
-// Squares as a file holds them: sidebands, and one stream for each image and level.  spec/gim-format.md.
+// Writes squares as a file holds them: sidebands, and one stream for each image and level. See spec/gim-format.md.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace gim {
 
-// Images: at least one, finite positions, sidebands that close the finest level. Else an Error names the image.
+// There must be at least one image. Positions must be finite, and sidebands must close the finest level. Otherwise an
+// Error names the image.
 Result<FileWriter> squares_writer(std::span<const SquareImage> images, const CodingParameters& parameters);
 Result<std::vector<uint8_t>> write_squares(std::span<const SquareImage> images, const CodingParameters& parameters);
 
-// What positions and details of a lossy file of these images are counted in. The quantizer is left out.
+// Returns the units of positions and details in a lossy file of these images. Leaves the quantizer out.
 Units units_of(std::span<const SquareImage> images, uint32_t bits);
 
-// The seams as a file has them. The image's sideband is in order.
+// Returns the seams as a file has them. The image's sideband must be valid.
 SeamTable file_seams(const SquareImage& image);
 
 }  // namespace gim

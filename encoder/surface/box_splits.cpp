@@ -17,7 +17,7 @@ struct Bin {
     uint32_t count = 0;
 };
 
-// Chooses the plane of least expected cost among kBins per axis; returns the position of the first item right of it.
+// Chooses the split of least expected cost among kBins per axis. Returns the position of the first item right of it.
 uint32_t partition(std::vector<BoxItem>& items, uint32_t begin, uint32_t end) {
     std::array<float, 3> low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
     for (uint32_t i = begin; i < end; ++i) {
@@ -65,15 +65,15 @@ uint32_t partition(std::vector<BoxItem>& items, uint32_t begin, uint32_t end) {
             }
         }
     }
-    // All centres in one place (or costs that are not numbers): any halving will do.
+    // If all centres are in one place (or costs are not numbers), any halving will do.
     if (best_axis < 0) return begin + (end - begin) / 2;
     const auto middle = std::partition(items.begin() + begin, items.begin() + end,
                                        [&](const BoxItem& item) { return bin_of(item, best_axis) < best_bin; });
     return static_cast<uint32_t>(middle - items.begin());
 }
 
-// Splits a range down to leaves; returns its top split, or kNone if it is a leaf. Lopsided splits are cut short by
-// halving, which bounds the depth.
+// Splits a range down to leaves. Returns its top split, or kNone if it is a leaf. Ranges deep in the tree are halved
+// instead, which bounds the depth when splits are lopsided.
 uint32_t build_range(std::vector<BoxItem>& items, std::vector<BoxSplit>& splits, uint32_t begin, uint32_t end,
                      int depth) {
     if (end - begin <= kLeafItems) return kNone;

@@ -1,4 +1,4 @@
-// Splits boxes into a binary tree by the surface-area heuristic: a query that opens only boxes near to it opens few.
+// Splits boxes into a binary tree by the surface-area heuristic. A query that opens only nearby boxes opens few.
 #pragma once
 
 #include <algorithm>
@@ -29,24 +29,25 @@ struct Box {
     }
 };
 
-// What the tree sorts: a triangle of the mesh and its box.
+// An item that the tree sorts: a triangle of the mesh and its box.
 struct BoxItem {
     Box box;
     std::array<float, 3> centre;
     uint32_t triangle;
 };
 
-// A binary split of a range of the leaf order, named by the position where it splits, which no other split has.
+// A binary split of a range of the leaf order. Its name is the position where it splits; no other split has it.
 struct BoxSplit {
     Box left, right;
-    uint32_t left_split, right_split;  // the splits of the two halves, or kNone where they are leaves
+    uint32_t left_split, right_split;  // splits of the two halves; kNone for a leaf
 };
 
-// Sorts the items into leaf order, leaves of up to four side by side. splits: becomes as long as items. Returns the top
-// split, or kNone if all items are one leaf. The tree is at most about 48 + 32 deep. O(n log n).
+// Sorts the items into leaf order: the items of a leaf, four at most, stand side by side. Makes `splits` as long as
+// `items`. Returns the top split, or kNone if all items are one leaf. The tree is at most about 48 + 32 deep.
+// O(n log n).
 uint32_t split_boxes(std::vector<BoxItem>& items, std::vector<BoxSplit>& splits, uint32_t threads);
 
-// Of items begin .. end - 1.
+// Returns the box around items begin .. end - 1.
 Box bounds(const std::vector<BoxItem>& items, uint32_t begin, uint32_t end);
 
 }  // namespace gim

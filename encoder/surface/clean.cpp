@@ -1,8 +1,7 @@
-// Cleaning of input meshes (clean.h). Not from a paper: the layouts suppose oriented 2-manifolds, files do not promise
-// them.
+// Cleans input meshes (clean.h). Not from a paper: layouts need oriented 2-manifolds, and files do not promise them.
 //
 // Order: check the numbers; drop degenerate and duplicate triangles; weld boundary edges that lie exactly on each
-// other; orient; drop unreferenced vertices; check that the result is what was promised, and if not, say where.
+// other; check that the surface is what clean.h promises, and if not, say where; orient; drop unreferenced vertices.
 #include "encoder/surface/clean.h"
 #include "encoder/base/result.h"
 
@@ -22,7 +21,7 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-constexpr size_t kListed = 3;  // elements that a message describes
+constexpr size_t kListed = 3;  // most elements that a message describes
 
 Error error(std::string message) { return Error{Stage::kClean, std::move(message)}; }
 
@@ -36,8 +35,7 @@ std::string text_of(const Point& p) {
     return buffer.data();
 }
 
-// ---- numbers
-// ---------------------------------------------------------------------------------------------------------
+// ---- numbers --------------------------------------------------------------------------------------------------------
 
 Result<void> check_numbers(const TriangleMesh& input) {
     if (input.triangles.empty()) return error("the mesh has no triangles; is the file a point cloud, or empty?");
@@ -76,16 +74,15 @@ Result<void> check_numbers(const TriangleMesh& input) {
     return {};
 }
 
-// ---- degenerate and duplicate triangles
-// ------------------------------------------------------------------------------
+// ---- degenerate and duplicate triangles -----------------------------------------------------------------------------
 
 Triangle sorted(Triangle t) {
     std::sort(t.begin(), t.end());
     return t;
 }
 
-// Removes triangles that repeat a name, or have the same three names as an earlier triangle; `considered` tells which
-// triangles may go. Names are vertices, or places.
+// Removes triangles that repeat a name, or have the same three names as an earlier triangle. `considered` says which
+// triangles may be removed. Names are vertices or places.
 template <class NameOf, class Considered>
 void remove_useless(std::vector<Triangle>& triangles, CleanReport& report, const NameOf& name_of,
                     const Considered& considered) {
@@ -119,8 +116,7 @@ void remove_useless(std::vector<Triangle>& triangles, CleanReport& report) {
         triangles, report, [](uint32_t v) { return v; }, [](uint32_t) { return true; });
 }
 
-// ---- welding
-// ---------------------------------------------------------------------------------------------------------
+// ---- welding --------------------------------------------------------------------------------------------------------
 
 // Numbers the vertices so that equal positions, and only they, share a number.
 std::vector<uint32_t> number_places(const std::vector<Point>& positions) {
@@ -137,7 +133,7 @@ std::vector<uint32_t> number_places(const std::vector<Point>& positions) {
     return place;
 }
 
-// Per triangle: all its three edges are boundary edges, as in a soup.
+// Returns for each triangle whether all its three edges are boundary edges, as in a soup.
 std::vector<bool> find_lone_triangles(const EdgeTable& edges, size_t face_count) {
     std::vector<uint8_t> open(face_count, 0);
     for (size_t e = 0; e < edges.size(); ++e) {
@@ -148,7 +144,7 @@ std::vector<bool> find_lone_triangles(const EdgeTable& edges, size_t face_count)
     return lone;
 }
 
-// Pairs boundary edges between the same two places, where there are exactly two, and unites their ends.
+// Pairs boundary edges between the same two places if there are exactly two, and unites their ends.
 DisjointSets stitch(const std::vector<Triangle>& triangles, const std::vector<uint32_t>& place) {
     struct OpenEdge {
         std::pair<uint32_t, uint32_t> places;
@@ -189,7 +185,7 @@ struct Welded {
 Welded weld(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, const CleanReport& report) {
     Welded result{triangles, report};
     const std::vector<uint32_t> place = number_places(positions);
-    // In a soup, what is degenerate or double shows only by position; left in, it would spoil the pairs of edges.
+    // In a soup, only positions show which triangles are degenerate or double. They would spoil the pairs of edges.
     const std::vector<bool> lone = find_lone_triangles(build_edge_table(triangles, positions.size()), triangles.size());
     remove_useless(
         result.triangles, result.report, [&](uint32_t v) { return place[v]; }, [&](uint32_t f) { return lone[f]; });
@@ -207,18 +203,17 @@ Welded weld(const std::vector<Point>& positions, const std::vector<Triangle>& tr
     return result;
 }
 
-// ---- orientation
-// -----------------------------------------------------------------------------------------------------
+// ---- orientation ----------------------------------------------------------------------------------------------------
 
 bool run_same_way(const std::vector<Triangle>& triangles, uint32_t h, uint32_t g) {
     return triangles[h / 3][h % 3] == triangles[g / 3][g % 3];
 }
 
-// Per face: must it be turned so that each component is consistent with its first face? Fails at the edge where a walk
-// around the surface comes back turned over.
+// Says for each face whether it must be turned, so that each component is consistent with its first face.
+// `contradiction` is the edge where a walk around the surface comes back turned over, if there is one.
 struct Turning {
     std::vector<bool> turn;
-    uint32_t contradiction = kNone;  // an edge
+    uint32_t contradiction = kNone;
 };
 
 Turning find_turning(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
@@ -257,13 +252,13 @@ Turning find_turning(const std::vector<Triangle>& triangles, const EdgeTable& ed
     return result;
 }
 
-// Closed components face outwards; open ones keep the side that most of their faces show.
+// Turns closed components outwards. Open components keep the side that most of their faces show.
 void choose_sides(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
                   const TopologyAnalysis& topology, std::vector<bool>& turn) {
     struct Piece {
         uint64_t faces = 0, turned = 0;
         bool open = false;
-        double volume = 0;  // times six, as it will be after turning
+        double volume = 0;  // six times the volume after turning
         Vec3 origin = Vec3::Zero();
     };
     std::vector<Piece> pieces(topology.summary.components);
@@ -286,8 +281,7 @@ void choose_sides(const std::vector<Point>& positions, const std::vector<Triangl
     }
 }
 
-// ---- messages
-// --------------------------------------------------------------------------------------------------------
+// ---- messages -------------------------------------------------------------------------------------------------------
 
 class Describer {
   public:
@@ -304,7 +298,7 @@ class Describer {
     }
     std::string vertex(uint32_t v) const { return "vertex " + std::to_string(v) + " at " + text_of(positions_[v]); }
 
-    // What is not a manifold, a line each.
+    // Describes what is not a manifold, one line each.
     std::string defects() const {
         std::string text;
         if (!topology_.nonmanifold_edges.empty()) {
@@ -345,8 +339,7 @@ class Describer {
     const TopologyAnalysis& topology_;
 };
 
-// ---- result
-// ----------------------------------------------------------------------------------------------------------
+// ---- result ---------------------------------------------------------------------------------------------------------
 
 CleanMesh compact(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, CleanReport report) {
     CleanMesh result;

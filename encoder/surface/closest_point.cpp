@@ -1,6 +1,6 @@
-// Closest points on a triangle mesh (closest_point.h).
-// In: a mesh. Out: per query the nearest surface point. Cost: O(F log F) to build, about O(log F) a query near the
-// surface.
+// Finds closest points on a triangle mesh (closest_point.h).
+// In: a mesh. Out: the nearest surface point of each query. Cost: O(F log F) to build; about O(log F) for a query near
+// the surface.
 #include "encoder/surface/closest_point.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t kWidth = 4;  // children of a node
 
-// ---- one triangle ----------------------------------------------------------------------------------------------------
+// ---- one triangle ---------------------------------------------------------------------------------------------------
 
 struct Candidate {
     double squared = std::numeric_limits<double>::infinity();
@@ -38,7 +38,7 @@ SegmentPoint nearest_on_segment(const Vec3& query, const Vec3& a, const Vec3& b)
     return {offset.squaredNorm(), t};
 }
 
-// The boundary of the triangle: what is left of slivers whose plane cannot be told.
+// Searches only the boundary of the triangle. This serves slivers whose normal is not reliable.
 Candidate nearest_on_rim(const Vec3& query, const Vec3& a, const Vec3& b, const Vec3& c) {
     const SegmentPoint ab = nearest_on_segment(query, a, b);
     const SegmentPoint bc = nearest_on_segment(query, b, c);
@@ -63,7 +63,7 @@ Candidate nearest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, c
     const double cp_ab = cp.dot(ab), cp_ac = cp.dot(ac);
     if (cp_ac >= 0 && cp_ab <= cp_ac) return {cp.squaredNorm(), 0, 1};
 
-    // Signed areas (times the triangle's own) of the query with each edge; their signs are noise in a sliver.
+    // Signed areas of the query with each edge, times the triangle's own area. In a sliver their signs are noise.
     const double area_ab = ap_ab * bp_ac - bp_ab * ap_ac;
     const double area_ca = cp_ab * ap_ac - ap_ab * cp_ac;
     const double area_bc = bp_ab * cp_ac - cp_ab * bp_ac;
@@ -71,7 +71,7 @@ Candidate nearest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, c
     const double ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm();
     const double size2 = std::max(ab2, ac2);
     if (!(area > 1e-11 * size2 * std::max(size2, ap.squaredNorm()))) {
-        // A query far above a sound triangle loses its digits too: ask for its foot in the plane instead.
+        // A query far above a sound triangle loses its digits too. Its projection along the normal is searched instead.
         const Vec3 normal = ab.cross(ac);
         const double normal2 = normal.squaredNorm();
         if (in_plane || !(normal2 > 1e-11 * size2 * size2)) return nearest_on_rim(query, a, b, c);
@@ -108,13 +108,13 @@ ClosestPoint expand(const Candidate& found, const Vec3& a, const Vec3& b, const 
     return result;
 }
 
-// ---- nodes -----------------------------------------------------------------------------------------------------------
+// ---- nodes ----------------------------------------------------------------------------------------------------------
 
 struct Corners {
     Vec3 a, b, c;
 };
 
-// The four children at once (GCC and Clang vector extension), in the precision that the query needs.
+// One value for each of the four children (GCC and Clang vector extension), in the precision that the query needs.
 template <class Real>
 struct Lane4;
 template <>
@@ -128,7 +128,7 @@ struct Lane4<double> {
 template <class Real>
 using Lanes = typename Lane4<Real>::Type;
 
-// (Through a reference: a vector wider than the machine's has no settled way to be returned.)
+// Writes to a reference, because there is no settled way to return a vector wider than the machine's.
 template <class Real>
 void load(const float* values, Lanes<Real>& lanes) {
     Lanes<float> floats;
@@ -136,11 +136,11 @@ void load(const float* values, Lanes<Real>& lanes) {
     lanes = __builtin_convertvector(floats, Lanes<Real>);
 }
 
-// A query this many extents of the mesh away (or nearer) is pruned with floats. Farther ones see all boxes at nearly the
+// A query at most this many extents of the mesh away is pruned with floats. A farther one sees all boxes at nearly the
 // same distance, and floats could not tell them apart.
 constexpr double kFar = 32;
 
-// Rounding of the query's coordinates, and the margin within which a box is opened although it seems too far.
+// Rounding of the query's coordinates, and the margin by which a box may seem too far and is still opened.
 template <class Real>
 struct Margin {
     static constexpr Real kQuery = Real(2.5e-7), kLimit = Real(1.00001), kLeast = Real(1e-37);
@@ -176,7 +176,7 @@ float round_up(double x) {
 
 }  // namespace
 
-// ---- the tree --------------------------------------------------------------------------------------------------------
+// ---- the tree -------------------------------------------------------------------------------------------------------
 
 struct ClosestPointTree::Impl {
     // Floats are in a frame around the middle of the mesh, scaled to about unit size.
@@ -285,7 +285,7 @@ ClosestPointTree& ClosestPointTree::operator=(ClosestPointTree&&) noexcept = def
 
 namespace {
 
-// One query, with boxes measured in the precision of Real.
+// Answers one query. Measures boxes in the precision of Real.
 template <class Real, class Tree>
 ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
     Candidate best;
@@ -300,7 +300,7 @@ ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
             best_position = position;
         }
     };
-    // A little above the best distance, in the tree's frame: boxes that might hold an equally near triangle pass.
+    // Returns a little more than the best distance, in the tree's frame. Boxes with an equally near triangle then pass.
     const auto limit_of = [&](double squared) {
         return static_cast<Real>(squared * tree.scale * tree.scale) * Margin<Real>::kLimit + Margin<Real>::kLeast;
     };
@@ -342,7 +342,7 @@ ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
             }
             Real squared[kWidth];
             std::memcpy(squared, &lanes, sizeof squared);
-            // Nearest child on top of the stack: insertion sort of what is near enough.
+            // Insertion sort of the children that are near enough. The nearest one ends on top of the stack.
             const uint32_t base = size;
             for (uint32_t k = 0; k < node.used; ++k) {
                 if (!(squared[k] <= limit)) continue;

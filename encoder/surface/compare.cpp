@@ -1,6 +1,6 @@
-// Distance between two surfaces, both ways (gim/encoder.h, "comparing").
-// In: two triangle meshes, of any topology. Out: area-weighted RMS and largest distances, PSNR; where asked for, the
-// angle between shading normals.
+// Measures the distance between two surfaces, both ways (gim/encoder.h, "comparing").
+// In: two triangle meshes, of any topology. Out: area-weighted RMS and largest distances, PSNR; if asked for, the angle
+// between shading normals.
 // Cost: O((|A| + |B| + samples) log); two meshes of 500,000 faces take a few seconds on one core.
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ Result<Mesh> checked_mesh(const TriangleMesh& input, const char* which) {
     return mesh;
 }
 
-// Keeps the vertices that triangles use.
+// Returns the vertices that triangles use.
 std::vector<Vec3> referenced_vertices(const Mesh& mesh) {
     std::vector<bool> used(mesh.positions.size(), false);
     for (const Triangle& t : mesh.triangles) {
@@ -55,7 +55,7 @@ std::vector<Vec3> referenced_vertices(const Mesh& mesh) {
     return vertices;
 }
 
-// One side of a comparison. The normals are empty where they are not asked for.
+// One side of a comparison. The normals are empty if they are not asked for.
 struct Side {
     const Mesh& mesh;
     const ClosestPointTree& tree;
@@ -73,7 +73,7 @@ struct Squares {
     double sum = 0, largest = 0;
 };
 
-// `all`: takes the closest points, unless it is empty.
+// Stores the closest points in `all`, unless it is empty.
 Squares squared_distances(const std::vector<Vec3>& points, const ClosestPointTree& surface, uint32_t threads,
                           std::span<ClosestPoint> all = {}) {
     constexpr size_t kBlock = 2048;
@@ -96,7 +96,8 @@ Squares squared_distances(const std::vector<Vec3>& points, const ClosestPointTre
     return total;
 }
 
-// Sum over the samples of the angles, in degrees, between both surfaces' shading normals. `found[i]` belongs to sample i.
+// Returns the sum of the angles between both surfaces' shading normals at the samples, in degrees. `found[i]` belongs
+// to sample i.
 double angle_sum(const Side& from, const SurfaceSamples& samples, const Side& to,
                  const std::vector<ClosestPoint>& found, uint32_t threads) {
     constexpr double kDegrees = 180 / std::numbers::pi;
@@ -109,7 +110,7 @@ double angle_sum(const Side& from, const SurfaceSamples& samples, const Side& to
     });
 }
 
-// Vertices are tried too: the largest distance is usually at one. They do not enter the mean.
+// Tries vertices too, because the largest distance is usually at one. They do not enter the mean.
 OneWay distance_to(const Side& from, const Side& to, const CompareOptions& options) {
     const SurfaceSamples samples = sample_by_area(from.mesh, options.samples, options.seed, options.threads);
     std::vector<ClosestPoint> found(options.normals ? samples.points.size() : 0);

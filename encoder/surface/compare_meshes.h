@@ -1,4 +1,4 @@
-// Many surfaces against one reference: what compare() does, with the reference's search tree built once.
+// Compares many surfaces with one reference. Does what compare() does, but builds the reference's search tree once.
 #pragma once
 
 #include "encoder/surface/closest_point.h"
@@ -9,10 +9,10 @@ namespace gim {
 
 class ReferenceSurface {
   public:
-    // Keeps the mesh. In: finite positions, indices in range.
+    // Keeps the mesh. Its positions must be finite and its indices in range.
     explicit ReferenceSurface(Mesh mesh, uint32_t threads = 0);
 
-    // As compare(), for a test mesh with finite positions and indices in range.
+    // Does what compare() does. The positions of `test` must be finite and its indices in range.
     Result<Comparison> compare(const Mesh& test, const CompareOptions& options) const;
     const Mesh& mesh() const { return mesh_; }
 

@@ -1,4 +1,4 @@
-// How much of a surface is crease: much of it on machined parts, hardly any on scans.
+// Measures how much of a surface is crease: much on machined parts, hardly any on scans.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@
 
 namespace gim {
 
-// The total length of edges sharper than 60 degrees. O(F).
+// Returns the total length of edges sharper than 60 degrees. O(F).
 inline double crease_length(const Mesh& mesh) {
     const EdgeTable edges = build_edge_table(mesh.triangles, mesh.positions.size());
     const auto normal = [&](uint32_t halfedge) {

@@ -40,7 +40,7 @@ std::vector<uint32_t> shortest_path(const Mesh& mesh, const Topology& topology, 
             std::reverse(path.begin(), path.end());
             return path;
         }
-        // A closed path (both ends the same vertex) may not leave through a boundary edge: those carry no mark.
+        // A closed path (both ends are one vertex) may not leave through a boundary edge, because those carry no mark.
         for_each_outgoing(topology, v, [&](uint32_t h) {
             if (topology.twin[h] != kNone) relax(v, to(mesh, h), h);
         });

@@ -27,10 +27,10 @@ inline uint32_t from(const Mesh& m, uint32_t h) { return m.triangles[h / 3][h % 
 inline uint32_t to(const Mesh& m, uint32_t h) { return m.triangles[h / 3][(h % 3 + 1) % 3]; }
 
 struct Topology {
-    std::vector<uint32_t> twin;      // per half-edge: the opposite one, or kNone on a boundary
-    std::vector<uint32_t> outgoing;  // per vertex: a half-edge that leaves it (kNone if isolated). On a boundary vertex
-                                     // it is the one whose predecessor in clockwise order does not exist, so that
-                                     // walking h = twin(prev(h)) until kNone meets every face of the vertex.
+    std::vector<uint32_t> twin;      // per half-edge: the opposite one; kNone on a boundary
+    std::vector<uint32_t> outgoing;  // per vertex: a half-edge that leaves it; kNone if isolated. On a boundary vertex
+                                     // no other one precedes it clockwise: walking h = twin(prev(h)) until kNone meets
+                                     // every face of the vertex.
 };
 
 // In: an oriented 2-manifold (see clean.h). O(F log F).

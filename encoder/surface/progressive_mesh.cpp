@@ -38,7 +38,7 @@ bool ProgressiveMesh::can_collapse(uint32_t h) const {
 }
 
 void ProgressiveMesh::repair_outgoing(uint32_t v, uint32_t candidate) {
-    // `candidate` leaves v and is alive. On a boundary vertex move to the half-edge without a twin.
+    // `candidate` leaves v and is alive. On a boundary vertex the loop moves to the half-edge without a twin.
     uint32_t h = candidate;
     while (twin_[h] != kNone) {
         h = next(twin_[h]);
@@ -62,7 +62,7 @@ void ProgressiveMesh::collapse(uint32_t h) {
     pair(record.outer[2], record.outer[3]);
     alive_[face_of(h)] = alive_[face_of(t)] = 0;
 
-    // outer[1] leaves `into` towards left, outer[2] leaves right towards `into`: both exist, as `vertex` was interior.
+    // outer[1] leaves `into` towards left, outer[2] leaves right towards `into`. `vertex` was interior, so both exist.
     outgoing_[vertex] = kNone;
     repair_outgoing(into, record.outer[1]);
     repair_outgoing(left, next(record.outer[1]));
@@ -116,12 +116,11 @@ ProgressiveMesh::Compacted ProgressiveMesh::compact(const std::vector<Vec3>& pos
     return result;
 }
 
-// ---- simplification
-// --------------------------------------------------------------------------------------------------
+// ---- simplification -------------------------------------------------------------------------------------------------
 
 namespace {
 
-// Weight of edge length against quadric error: small, so that it decides in flat regions only.
+// Weight of edge length against quadric error. It is small, so that edge length decides in flat regions only.
 constexpr double kShortEdgeWeight = 3e-3;
 // A collapse must not turn a face by more than about 78 degrees.
 constexpr double kLeastNormalCosine = 0.2;
@@ -157,7 +156,7 @@ class Simplifier {
         }
     }
 
-    // First with well-shaped faces; when that gets stuck (slivers, narrow strips), by connectivity alone.
+    // Keeps faces well-shaped first. If that gets stuck (slivers, narrow strips), goes on by connectivity alone.
     void run() {
         run_phase();
         keep_shape_ = false;
@@ -206,8 +205,8 @@ class Simplifier {
         }
     }
 
-    // No face around origin(h) may turn over when it moves onto target(h), and no edge may lie along a side of the
-    // square.
+    // Returns whether origin(h) may move onto target(h). No face around it may turn over, and no edge may lie along a
+    // side of the square.
     bool allowed(uint32_t h) const {
         const uint32_t v = mesh_.origin(h), w = mesh_.target(h);
         const uint32_t left = mesh_.origin(prev(h)), right = mesh_.origin(prev(mesh_.twin(h)));
@@ -221,7 +220,7 @@ class Simplifier {
             const Vec3 after = (positions_[a] - positions_[w]).cross(positions_[b] - positions_[w]);
             const double limit = before.norm() * after.norm();
             good &= before.dot(after) > kLeastNormalCosine * limit || before.squaredNorm() == 0;
-            // Needles: an obtuse sliver is worth nothing to the coarse solve.
+            // Needles are refused: an obtuse sliver is worth nothing to the coarse solve.
             const double longest =
                 std::max({(positions_[a] - positions_[w]).squaredNorm(), (positions_[b] - positions_[w]).squaredNorm(),
                           (positions_[a] - positions_[b]).squaredNorm()});
@@ -259,7 +258,7 @@ class Simplifier {
         quadrics_[w] += quadrics_[v];
         area_[w] += area_[v];
         push(w);
-        // Waiting neighbours are looked at again when their turn comes; those that were stuck get a new chance now.
+        // Queued neighbours are looked at again when their turn comes. Those that were stuck get a new chance now.
         mesh_.for_each_neighbour(w, [&](uint32_t n) {
             if (!queued_[n]) push(n);
         });

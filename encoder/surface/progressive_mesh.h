@@ -1,9 +1,9 @@
-// A mesh that is coarsened by half-edge collapses and refined again by undoing them in reverse order.
+// Coarsens a mesh by half-edge collapses, and refines it again by undoing them in reverse order.
 //
-// After: Hoppe. Progressive Meshes. SIGGRAPH 1996, with half-edge collapses, so that every coarse vertex is an input
-// vertex. Used twice: to look for a good cut on a coarse version of the surface (augment_cut.h), and coarse to fine by
-// the stretch optimisation (parametrize.h; Sander, Gortler, Snyder, Hoppe 2002). Only interior vertices are ever
-// removed: boundaries stay.
+// After: Hoppe. Progressive Meshes. SIGGRAPH 1996. Our collapses are half-edge collapses, so every coarse vertex is an
+// input vertex. Two stages use this: augment_cut.h searches for a good cut on a coarse version of the surface, and
+// parametrize.h optimises stretch from coarse to fine (Sander, Gortler, Snyder, Hoppe 2002). Only interior vertices are
+// removed; boundaries stay.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace gim {
 
-// One undo of a collapse: `vertex` came back, split off from `into`. `left` and `right` are the third corners of the
-// two faces that came back with it, at half-edges `edge` (vertex -> into) and its twin.
+// A collapse that was undone: `vertex` came back, split off from `into`. Two faces came back with it, at half-edge
+// `edge` (vertex -> into) and at its twin. `left` and `right` are their third corners.
 struct VertexSplit {
     uint32_t vertex, into, left, right;
     uint32_t edge;
@@ -29,8 +29,8 @@ class ProgressiveMesh {
     uint32_t origin(uint32_t h) const { return origin_[h]; }
     uint32_t target(uint32_t h) const { return origin_[next(h)]; }
     uint32_t twin(uint32_t h) const { return twin_[h]; }
-    // A half-edge that leaves v; on a boundary vertex the one from which walking twin(prev(h)) meets every face. kNone
-    // when removed.
+    // Returns a half-edge that leaves v, or kNone if v is removed. On a boundary vertex, walking twin(prev(h)) from it
+    // meets every face.
     uint32_t outgoing(uint32_t v) const { return outgoing_[v]; }
     bool alive(uint32_t face) const { return alive_[face] != 0; }
     bool removed(uint32_t v) const { return outgoing_[v] == kNone; }
@@ -52,7 +52,7 @@ class ProgressiveMesh {
         } while (h != first && h != kNone);
     }
 
-    // The same for every neighbour vertex (on a boundary that is one more than half-edges).
+    // Calls visit(w) for every neighbour vertex w. A boundary vertex has one more of them than outgoing half-edges.
     template <class Visit>
     void for_each_neighbour(uint32_t v, Visit&& visit) const {
         const uint32_t first = outgoing_[v];
@@ -65,14 +65,14 @@ class ProgressiveMesh {
         if (h == kNone) visit(origin_[prev(last)]);
     }
 
-    // Removes origin(h), an interior vertex, by moving it onto target(h). The caller has checked can_collapse(h).
+    // Removes origin(h), an interior vertex, by moving it onto target(h). The caller must have checked can_collapse(h).
     void collapse(uint32_t h);
-    // Whether collapsing h keeps a 2-manifold (link condition). O(valence^2).
+    // Returns whether the mesh is still a 2-manifold after collapsing h (link condition). O(valence^2).
     bool can_collapse(uint32_t h) const;
     // Undoes the last collapse.
     VertexSplit split();
 
-    // The current mesh, compacted, with the original number of each of its vertices and faces.
+    // The current mesh, compacted, and the original number of each of its vertices and faces.
     struct Compacted {
         Mesh mesh;
         std::vector<uint32_t> vertices, faces;
@@ -83,8 +83,8 @@ class ProgressiveMesh {
     struct Collapse {
         uint32_t edge;  // vertex -> into
         uint32_t vertex, into;
-        uint32_t outer[4];     // twins of next/prev of edge, next/prev of its twin
-        uint32_t outgoing[4];  // of vertex, into, left, right before the collapse
+        uint32_t outer[4];     // twins of next and prev of `edge`, then of next and prev of its twin
+        uint32_t outgoing[4];  // of vertex, into, left and right, before the collapse
     };
     void pair(uint32_t a, uint32_t b);
     void repair_outgoing(uint32_t v, uint32_t candidate);
@@ -96,14 +96,15 @@ class ProgressiveMesh {
 };
 
 struct SimplifyOptions {
-    uint32_t target_vertices = 0;  // stop here, boundary vertices included
-    bool insist = false;  // when well-shaped collapses run out above the target, go on with any that keep a manifold
-    // Per vertex: bits of the sides of the square that it lies on. No edge is made between two vertices that share a
-    // side (it would be flat in the square). Empty: no such rule.
+    uint32_t target_vertices = 0;  // coarsening stops here; boundary vertices count
+    // If well-shaped collapses run out above the target, continue with any that keep a manifold.
+    bool insist = false;
+    // Per vertex: bits of the sides of the square that it lies on. No new edge may join two vertices that share a side,
+    // because it would be flat in the square. Empty: no such rule.
     std::vector<uint8_t> sides;
 };
 
-// Coarsens by quadric error (Garland, Heckbert 1997) with a term that prefers short edges in flat regions. O(V log V).
+// Coarsens by quadric error (Garland, Heckbert 1997), plus a term that prefers short edges in flat regions. O(V log V).
 void simplify(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const SimplifyOptions& options);
 
 }  // namespace gim

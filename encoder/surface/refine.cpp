@@ -13,19 +13,19 @@ class Refiner {
   public:
     explicit Refiner(Mesh mesh) : mesh_(std::move(mesh)), twin_(build_topology(mesh_).twin) {}
 
-    // Splits faces for which too_large(mesh, face, its longest half-edge).
+    // Splits faces until too_large(mesh, face, its longest half-edge) is false for all of them.
     template <class TooLarge>
     Mesh run(const TooLarge& too_large) {
-        for (uint32_t f = 0; f < mesh_.triangles.size();
-             ++f) {  // grows as faces are split: the new ones are visited too
+        // The list grows as faces are split, so the new faces are visited too.
+        for (uint32_t f = 0; f < mesh_.triangles.size(); ++f) {
             while (too_large(mesh_, f, longest_edge(f))) split_longest(f);
         }
         return std::move(mesh_);
     }
 
   private:
-    // Splits the longest edge of f. Where a neighbour has a longer edge, that one is split first: edges on the way
-    // grow, so it ends at an edge that is the longest of both its faces.
+    // Splits the longest edge of f. If a neighbour has a longer edge, that one is split first. Edges grow on the way,
+    // so the walk ends at an edge that is the longest of both its faces.
     void split_longest(uint32_t f) {
         for (uint32_t at = f;;) {
             const uint32_t h = longest_edge(at), t = twin_[h];
@@ -53,7 +53,7 @@ class Refiner {
     void split_edge(uint32_t h) {
         const uint32_t a = from(mesh_, h), b = to(mesh_, h), t = twin_[h];
         const auto middle = static_cast<uint32_t>(mesh_.positions.size());
-        // The smaller number first: the same point from either side.
+        // The smaller number comes first, so that both sides give the same point.
         const Vec3 &p = mesh_.positions[std::min(a, b)], &q = mesh_.positions[std::max(a, b)];
         const Vec3 point = 0.5 * (p + q);
         mesh_.positions.push_back(point);

@@ -12,12 +12,12 @@ Vec3 unit_or_zero(const Vec3& v) {
     return length > 0 ? Vec3(v / length) : Vec3::Zero();
 }
 
-// Twice the area long.
+// Returns the area vector. Its length is twice the area.
 Vec3 area_vector(const Mesh& mesh, const Triangle& t) {
     return (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
 }
 
-// Per vertex the first one at its position.
+// Returns for each vertex the first one at its position.
 std::vector<uint32_t> first_at_position(const Mesh& mesh) {
     std::vector<uint32_t> order(mesh.positions.size()), first(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -35,7 +35,7 @@ double stretch_efficiency(const Mesh& mesh, const std::vector<Vec2>& uv, double 
 
 namespace {
 
-// Energy, gradient and Hessian of the star at x. Infinite outside the kernel.
+// Energy, gradient and Hessian of the star at x. The energy is infinite outside the kernel.
 struct StarEnergy {
     double value = 0;
     Vec2 gradient = Vec2::Zero();
@@ -81,7 +81,7 @@ StarEnergy star_energy(const std::vector<StarTriangle>& star, const Vec2& x) {
     return sum;
 }
 
-// Newton direction with the Hessian's eigenvalues made positive.
+// Returns the Newton direction, with the Hessian's eigenvalues made positive.
 Vec2 descent_direction(const StarEnergy& e) {
     const double xx = e.hessian(0, 0), xy = e.hessian(0, 1), yy = e.hessian(1, 1);
     const double mean = 0.5 * (xx + yy), radius = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
@@ -92,7 +92,7 @@ Vec2 descent_direction(const StarEnergy& e) {
     return Vec2(-(c * e.gradient.x() - xy * e.gradient.y()) / det, -(a * e.gradient.y() - xy * e.gradient.x()) / det);
 }
 
-// The longest step along `direction` that keeps every triangle counter-clockwise.
+// Returns the longest step along `direction` that keeps every triangle counter-clockwise.
 double longest_step(const std::vector<StarTriangle>& star, const Vec2& x, const Vec2& direction) {
     double longest = std::numeric_limits<double>::infinity();
     for (const StarTriangle& t : star) {
@@ -132,7 +132,7 @@ double minimise_star(const std::vector<StarTriangle>& star, Vec2& x, int steps) 
 }
 
 bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x) {
-    // Clip a box around the star by the half-plane left of every outer edge.
+    // Clips a box around the star to what lies left of every outer edge.
     Vec2 low = star.front().p1, high = low;
     for (const StarTriangle& t : star) {
         low = low.cwiseMin(t.p1).cwiseMin(t.p2);

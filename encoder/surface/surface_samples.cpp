@@ -34,7 +34,7 @@ SurfaceSamples sample_by_area(const Mesh& mesh, uint32_t count, uint64_t seed, u
     samples.triangles.resize(count);
     samples.barycentrics.resize(count);
 
-    // The plastic number's powers: successive multiples fill the square evenly over every run of samples.
+    // Powers of the plastic number. Their successive multiples fill the square evenly over every run of samples.
     constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
     const uint64_t key = mix_bits(seed);
     const double shift_u = unit_from_bits(mix_bits(key ^ 1)), shift_v = unit_from_bits(mix_bits(key ^ 2));

@@ -33,8 +33,8 @@ Components number_components(const EdgeTable& edges, size_t face_count) {
     return result;
 }
 
-// Corners (3*f+i) joined into fans: two corners of a vertex are in one fan when a walk from face to face through edges
-// of the vertex leads from one to the other.
+// Joins corners (3*f+i) into fans. Two corners of a vertex are in one fan if a walk from face to face, through edges of
+// the vertex, leads from one to the other.
 DisjointSets unite_fans(const EdgeTable& edges, std::span<const Triangle> triangles) {
     DisjointSets corners(3 * triangles.size());
     for (size_t e = 0; e < edges.size(); ++e) {
@@ -68,7 +68,7 @@ uint64_t count_boundary_loops(const EdgeTable& edges, DisjointSets& fans, size_t
 }  // namespace
 
 EdgeTable build_edge_table(std::span<const Triangle> triangles, size_t vertex_count) {
-    // Counting sort by the smaller vertex, then each vertex's few half-edges by the larger one.
+    // Counting sort by the smaller vertex. Then the few half-edges of each vertex are sorted by the larger one.
     const auto half_edge_count = static_cast<uint32_t>(3 * triangles.size());
     std::vector<uint32_t> bucket(vertex_count + 1, 0);
     for (uint32_t h = 0; h < half_edge_count; ++h) {
@@ -150,7 +150,7 @@ TopologyAnalysis analyse_topology(std::span<const Triangle> triangles, size_t ve
     return result;
 }
 
-// Triangles that name missing vertices are counted but not looked at, and make the mesh non-manifold.
+// Counts triangles that name missing vertices, but does not look at them. They make the mesh non-manifold.
 TopologySummary summarize_topology(const TriangleMesh& mesh) {
     std::vector<Triangle> usable;
     usable.reserve(mesh.triangles.size());

@@ -1,4 +1,4 @@
-// What holds of a triangle list's connectivity, and where it is broken. Works on any triangles, manifold or not.
+// Describes the connectivity of a triangle list, and where it is broken. Takes any triangles, manifold or not.
 #pragma once
 
 #include <cstdint>
@@ -32,17 +32,17 @@ struct TopologyAnalysis {
     std::vector<uint32_t> component_of_face;     // numbered by their first face
 };
 
-// In: indices below vertex_count. O(F) nearly.
+// In: indices below vertex_count. Nearly O(F).
 TopologyAnalysis analyse_topology(std::span<const Triangle> triangles, size_t vertex_count);
 
-// Numbers the pieces connected through edges, in the order of their first faces.
+// The pieces that are connected through edges, numbered in the order of their first faces.
 struct Components {
     std::vector<uint32_t> of_face;
     uint32_t count = 0;
 };
 Components connected_components(std::span<const Triangle> triangles, size_t vertex_count);
 
-// One component as a mesh of its own; vertices and faces keep their order.
+// Returns one component as a mesh of its own. Vertices and faces keep their order.
 Mesh extract_component(const Mesh& mesh, const Components& components, uint32_t component);
 
 }  // namespace gim
