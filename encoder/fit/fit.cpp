@@ -3,12 +3,12 @@
 // A round splits the cells, samples both surfaces by area, and finds the closest points. Then it minimises over the
 // displacements dx:
 //
-//     sum_o w |p - S(x + dx)|^2_W + sum_m w |S(x + dx) - q|^2_W + lambda sum_edges a/4 |T (x_i - x_j)|^2 + mu sum_v a_v
-//     |dx|^2
+//     sum_o w |p - S(x + dx)|^2_W + sum_m w |S(x + dx) - q|^2_W
+//         + lambda sum_edges a/4 |T (x_i - x_j)|^2 + mu sum_v a_v |dx|^2
 //
 // S(x) is the sampled point of the image; p and q are points of the reference. W = n n^T + tau (1 - n n^T). n is the
-// face normal if the closest point is inside a face, else the direction to it. T projects on the tangents. x_i, x_j run
-// over grid edges. Then the round steps as far as the guard allows: no steep face may turn further away from the
+// face normal if the closest point is inside a face, else the direction to it. T keeps the tangential part. x_i, x_j
+// run over grid edges. Then the round steps as far as the guard allows: no steep face may turn further away from the
 // reference's normal. lambda falls from round to round, and the number of samples rises. If the start has folds, the
 // first rounds begin with unfolding: they relax the samples around folds along the surface.
 //

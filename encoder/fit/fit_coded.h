@@ -38,7 +38,7 @@ class CodedFit {
     // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
     // number of threads. Cost: 5, 24 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
-    // Makes the next call begin at the start again. Samples that a coarse quantizer has heaped up do not come apart.
+    // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();
 
   private:

@@ -32,7 +32,7 @@ struct FitFrame {
     Vec3 out_of(const Vec3& point) const { return point / scale + middle; }
 };
 
-// What stays the same from round to round.
+// The reference, prepared once for all rounds.
 struct FitReference {
     Mesh mesh;
     std::vector<Vec3> normals;

@@ -40,7 +40,7 @@ struct GridGluing {
     size_t sample_count() const { return representative.size(); }
     bool is_defined(uint32_t sample) const { return representative[sample] != kNone; }
     uint64_t defined_count() const;
-    // The samples a b / c d.
+    // Returns the samples at the corners: a, b and below them c, d.
     std::array<uint32_t, 4> corners(uint32_t cell) const {
         const uint32_t a = cell / (width - 1) * width + cell % (width - 1);
         return {a, a + 1, a + width, a + width + 1};

@@ -13,7 +13,7 @@ namespace gim {
 
 class LayoutImages : public PlaneImages {
   public:
-    // Sets the figures of the images: layout, sizes, numbers of samples, cut-paths and charts.
+    // Sets the images' figures in the report: layout, sizes, numbers of samples, cut-paths and charts.
     virtual void describe(EncodeReport& report) const = 0;
 
     // Returns whether fit() may be called: true for lossy images that are fitted to their quantizer.
