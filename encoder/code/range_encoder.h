@@ -83,7 +83,7 @@ class RangeEncoder {
         }
     }
 
-    std::vector<uint8_t> front_, back_;  // back_: in reading order, stored backwards
+    std::vector<uint8_t> front_, back_;  // back_: in reading order; finish() reverses it
     uint64_t low_ = 0, range_ = UINT64_MAX;
     uint64_t raw_ = 0;
     uint32_t raw_count_ = 0;
