@@ -1,4 +1,4 @@
-// The ranges of EncodeOptions.
+// Checks the ranges of EncodeOptions.
 #pragma once
 
 #include "encoder/base/result.h"
@@ -6,7 +6,7 @@
 
 namespace gim {
 
-// An Error names the option and what it may be.
+// An Error names the option and its allowed values.
 Result<void> check_options(const EncodeOptions& options);
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// --layout auto: one square or charts, whichever should give the better PSNR for the same budget.
+// --layout auto: chooses the layout that should give the better PSNR for the same budget, squares or charts.
 #pragma once
 
 #include "encoder/base/stage_clock.h"
@@ -7,12 +7,13 @@
 
 namespace gim {
 
-// Lossless images cost about the same bytes a sample in both layouts, so that the one with more effective samples wins: those
-// of an image times its stretch efficiency (Sander et al. 2003, section 5: what charts gain over one square). Both
-// parametrizations are made for that, neither is fitted. Coded with loss, every chart costs some 150 bytes more
-// than the same surface on a square, for borders and for what is smooth across seams, which charts never earn back at useful
-// rates: measured, a horse at 70 dB takes 3 times the bytes. So the square wins unless the surface cannot be cut open onto one.
-// Cost: seconds. `mesh`: clean.
+// Lossless: both layouts take about the same bytes per sample, so the one with more effective samples wins. Effective
+// samples are samples times stretch efficiency (Sander et al. 2003, section 5: what charts gain over one square). Both
+// parametrizations are made for this; neither is fitted.
+// Lossy: squares win unless the surface cannot be cut open onto one. Each chart adds about 150 bytes: its border is
+// stored, and the wavelet cannot predict across it. Charts do not earn this back at useful rates: a horse at 70 dB
+// takes 3 times the bytes.
+// Cost: seconds. `mesh` must be clean.
 Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// The end of every encoding: images to bytes that meet the rate target, and the figures of the run.
+// The end of every encoding: codes images to bytes that meet the rate target, and completes the report.
 #pragma once
 
 #include "encoder/base/result.h"
@@ -9,8 +9,8 @@
 
 namespace gim {
 
-// Codes to the target of the options, judging the decoded surface against `reference`, and completes the report.
-// `input`: the mesh as read, for its colours.
+// Codes images to the target of the options. Compares the decoded surface with `reference`. `input`: the mesh as read,
+// which has the colours. Returns the file with the completed report.
 Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
                              const EncodeOptions& options, StageClock& clock, EncodeReport report);
 

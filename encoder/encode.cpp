@@ -1,4 +1,4 @@
-// Triangle mesh -> .gim: the driver. Its lines are the stages; layouts.h says who makes the images.
+// The driver from a triangle mesh to a .gim file. Its lines are the stages. layouts.h says who makes the images.
 #include <string>
 #include <utility>
 
@@ -37,7 +37,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
 
     if (options.layout == Layout::kAuto) options.layout = choose_layout(cleaned.mesh, options, clock);
     const LayoutEntry* layout = find_layout(options.layout);
-    CutPreferences cuts;  // chosen at the first side
+    CutPreferences cuts;  // chosen at the first side, then kept
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Observer& shown) -> Result<Encoded> {
         EncodeReport report = input_report;
         GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));

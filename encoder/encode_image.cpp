@@ -1,4 +1,4 @@
-// An existing geometry image -> .gim: the driver for images that are sampled already.
+// The driver from an existing geometry image to a .gim file.
 #include <algorithm>
 #include <utility>
 
@@ -25,7 +25,7 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
     report.input_vertices = image.positions.size();
     report.input_triangles = surface.triangles.size();
 
-    // Levels coarser than the node grid cannot be closed, so they are not kept apart.
+    // Levels coarser than the node grid cannot be closed, so they are not stored separately.
     options.side = image.side();
     options.node_side =
         std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side(), 5u));
@@ -41,7 +41,7 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
 Result<Encoded> encode_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance,
                              const EncodeOptions& options, const Progress& progress) {
     EncodeOptions checked_options = options;
-    checked_options.side = 257;  // the image has its own
+    checked_options.side = 257;  // the image has its own side
     checked_options.node_side = 17;
     GIM_CHECK(check_options(checked_options));
     return guarded(options.threads, [&] { return run_stages(planes, side, weld_tolerance, options, progress); });

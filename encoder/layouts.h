@@ -19,21 +19,21 @@ struct MakeImages {
     StageClock& clock;
     const Observer& observer;
     EncodeReport& report;  // gets the figures of the stages
-    CutPreferences& cuts;  // of squares: empty, or chosen by an earlier call
+    CutPreferences& cuts;  // squares: empty, or the choice of an earlier call
 };
 
 struct LayoutEntry {
     Layout layout;
-    // All stages from the clean mesh to images that are ready to be coded.
+    // Runs all stages from the clean mesh to images that are ready to be coded.
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
-    // Effective samples per sample; 0 where the layout cannot take the mesh. For --layout auto.
+    // Returns effective samples per sample; 0 if the layout cannot take the mesh. For --layout auto.
     double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
 };
 
-// In the order in which --layout auto prefers them for lossy files.
+// Returns the layouts in the order that --layout auto prefers for lossy files.
 std::span<const LayoutEntry> all_layouts();
 
-// layout: not kAuto. Null where the encoder does not know it.
+// Returns null if the encoder does not know the layout. layout: not kAuto.
 const LayoutEntry* find_layout(Layout layout);
 
 }  // namespace gim

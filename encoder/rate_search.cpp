@@ -18,7 +18,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using Values = RateSearchValues;
 
-// PSNR, in dB, of the surface that a file decodes to. Must be the same for the same bytes.
+// Returns the PSNR, in dB, of a file's decoded surface. Must give the same value for the same bytes.
 using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 
 std::string decimal(double value) {
@@ -29,7 +29,7 @@ std::string decimal(double value) {
 
 Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
     double fine = Values::kFinest - 1,
-           coarse = Values::kCoarsest + 1;  // judged good enough / too coarse so far, as logarithms
+           coarse = Values::kCoarsest + 1;  // coarsest that is good enough, finest that is not; base-2 logarithms
     double fine_psnr = 0, coarse_psnr = 0, best_psnr = 0;
     Bytes best;
     double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
@@ -48,7 +48,7 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
         const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
         if (bracketed && coarse - fine < 1e-3) break;
         if (bracketed) {
-            // Aim a little above the target, and never too near to either end.
+            // Aims a little above the target, and not too near to either end.
             const double aim = target + 0.4 * Values::kPsnrSlack;
             const double part = std::clamp((fine_psnr - aim) / (fine_psnr - coarse_psnr), 0.1, 0.9);
             at = fine + part * (coarse - fine);
@@ -67,7 +67,7 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
 
 Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
     double fine = Values::kFinest - 1,
-           coarse = Values::kCoarsest + 1;  // too large / small enough so far, as logarithms
+           coarse = Values::kCoarsest + 1;  // coarsest that is too large, finest that is not; base-2 logarithms
     Bytes best;
     size_t smallest = SIZE_MAX;
     double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
@@ -109,7 +109,7 @@ Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateT
     return Error{Stage::kCode, "unknown rate target"};
 }
 
-// From a rate target to the file that meets it.
+// Finds the file that meets a rate target.
 class RateSearch {
   public:
     RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
@@ -146,7 +146,7 @@ class RateSearch {
                                                        : Values::kFittedBytesSlack / std::log(Values::kBytesPerOctave);
     }
 
-    // How much coarser the quantizer might be, in octaves, for the target and a part of the slack to be met.
+    // Estimates by how many octaves the quantizer could be coarser and still meet the target plus half its slack.
     Result<double> room(const Bytes& bytes) const {
         RateTarget wanted = target_;
         if (target_.kind == RateTarget::Kind::kBytes) {
@@ -158,7 +158,7 @@ class RateSearch {
         return octaves_to(wanted, 0, comparison.psnr);
     }
 
-    // By quick fits.
+    // Approaches the target's quantizer by quick fits.
     Result<double> approach(double quantizer) {
         for (int k = 0; k < Values::kMostApproaches; ++k) {
             GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
@@ -169,11 +169,11 @@ class RateSearch {
         return quantizer;
     }
 
-    // Every file is coded with the quantizer that it is fitted to: with one that is a tenth of an octave finer it would be
-    // larger and farther from the surface. So fits go on until one meets the target, and the best of those is taken.
+    // Fits until a file meets the target closely, and returns the best file that meets it. Each file is coded with the
+    // quantizer that it is fitted to. A tenth of an octave finer would make it larger and farther from the surface.
     Result<Bytes> fit_to_target(double quantizer) {
         Bytes best;
-        double final_for = 0;  // what the last final fit was for
+        double final_for = 0;  // quantizer of the last final fit
         for (int k = 0; k < Values::kMostFits; ++k) {
             const bool is_far = k == 0 || std::abs(std::log2(quantizer / final_for)) > Values::kNear;
             if (is_far) final_for = quantizer;
@@ -201,7 +201,7 @@ class RateSearch {
         return target_.kind == RateTarget::Kind::kBytes ? bytes.size() > best.size() : bytes.size() < best.size();
     }
 
-    // Searches with few samples, then makes sure with as many as compare() takes: a PSNR target is never missed.
+    // Searches with few samples, then checks a PSNR target with as many as compare() takes. Repeats while it is missed.
     Result<Bytes> search(double quantizer) const {
         CodingParameters parameters = parameters_;
         parameters.quantizer = quantizer;

@@ -1,4 +1,4 @@
-// From a rate target to the file that meets it.
+// Finds the file that meets a rate target.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 namespace gim {
 
 // Codes the images at the quantizer that options.rate asks for:
-//   lossless  the quantized images are kept exactly
-//   quality   no search
-//   psnr      the smallest file found whose surface is not below `value`; an Error names the best in reach
-//   bytes     the best file found that is not above `value`; an Error names the smallest size in reach
-// Images that are fitted to their quantizer are fitted again for each; the last fit stays. parameters: planes and text.
-// Cost: up to about 16 files, each fitted, decoded and compared. The values of the search: code/rate_target.h.
+//   lossless  keeps the quantized images exactly
+//   quality   does not search
+//   psnr      returns the smallest file found whose PSNR is at least `value`; an Error names the best PSNR in reach
+//   bytes     returns the best file found of at most `value` bytes; an Error names the smallest size in reach
+// Images that are fitted to their quantizer are fitted again for each quantizer; they keep the last fit. parameters:
+// planes and text. Cost: up to about 16 files, each fitted, decoded and compared. Constants: code/rate_target.h.
 Result<std::vector<uint8_t>> search_rate(LayoutImages& images, const CodingParameters& parameters,
                                          const EncodeOptions& options, const ReferenceSurface& reference,
                                          StageClock& clock);

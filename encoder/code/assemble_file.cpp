@@ -26,7 +26,7 @@ Payload make_payload(ChunkType type, bool optional, std::vector<uint8_t> bytes) 
     return p;
 }
 
-// Compressed where that is smaller.
+// Compresses the text if that makes it smaller.
 Payload make_text_payload(const std::string& text) {
     std::vector<uint8_t> raw(text.begin(), text.end());
     std::vector<uint8_t> packed(ZSTD_compressBound(raw.size()));

@@ -1,4 +1,4 @@
-// Payloads -> a complete .gim file: chunks, index, checksums.  spec/gim-format.md, "File".
+// Turns payloads into a complete .gim file: chunks, index, checksums.  spec/gim-format.md, "File".
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ struct CodedPlane {
     std::vector<uint8_t> payload;
 };
 
-// levels: payloads, coarsest first.
+// levels: payloads, coarsest level first.
 std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t> seams,
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text);
 
-// Writes the measured PSNR of each level (finest first, dB) into the header of a file of ours that has room for them.
-// The size stays.
+// Returns the file with the measured PSNR of each level (finest first, dB) in its header. The file must have room for
+// them (CodingParameters::level_psnr). Its size stays the same.
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr);
 
 }  // namespace gim

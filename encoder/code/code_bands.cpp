@@ -8,14 +8,14 @@
 namespace gim {
 namespace {
 
-// Dead zone. A magnitude is rounded up from this fraction on ...
+// The dead zone. Its values were measured on the development models, like the decoder's reconstruction shift
+// (spec/rationale.md). A magnitude is rounded up from this fraction on.
 constexpr float kRoundUpFrom = 0.55f, kTangentialRoundUpFrom = 0.6f;
-// ... but a single step is left out up to this much more where the neighbours are small, for there it costs most bits.
+// A single step among small neighbours takes most bits. There the fraction rises by up to this much.
 constexpr float kLonely = 0.2f;
 constexpr float kNotLonelyFrom = 0.5f;  // mean magnitude of the neighbours, in steps
-// The three were measured on the development models; so was the decoder's reconstruction shift (spec/rationale.md).
 
-// Largest coefficient that the coder takes; only reached by absurdly small steps.
+// Largest coefficient that the coder takes. Only absurdly small steps reach it.
 constexpr float kMaxMagnitude = 0x1p24f;
 
 struct RealBand {
@@ -27,7 +27,7 @@ struct RealBand {
     }
 };
 
-// Mean over the eight neighbours and the two other components, each counted as four at most.
+// Returns the mean magnitude of the eight neighbours and the two other components. Each counts as four at most.
 float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32_t k) {
     constexpr float most = 4;
     float sum = 0;
@@ -42,7 +42,7 @@ float mean_neighbour(const RealBand& band, uint32_t row, uint32_t column, uint32
     return sum / 10;
 }
 
-// band: in steps.
+// band: in units of its step.
 std::vector<int32_t> round_band(const RealBand& band, bool in_frames) {
     std::vector<int32_t> out(band.values.size());
     for (uint32_t row = 0, i = 0; row < band.rows; ++row) {
@@ -64,7 +64,7 @@ std::vector<int32_t> round_band(const RealBand& band, bool in_frames) {
     return out;
 }
 
-// The details of one band as multiples of their steps, rounded; and what a decoder makes of them.
+// The details of one band: as rounded multiples of their steps, and as decoded.
 struct QuantizedBand {
     std::vector<int32_t> integers;
     std::vector<float> details;
@@ -100,7 +100,7 @@ float* detail_at(AnalysisLevel<float>& level, uint32_t side, Orientation orienta
     return &(is_horizontal ? level.horizontal : level.vertical)[(size_t{row} * columns + column) * 3];
 }
 
-// What mates share becomes the mean of both, copies become zero.
+// Sets details that mates share to the mean of both, and copies to zero.
 void share_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t side) {
     rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
         const DetailPlace from = rim.source_of(orientation, row, column);
@@ -119,7 +119,7 @@ void copy_details(const SharedRim& rim, AnalysisLevel<float>& level, uint32_t si
     });
 }
 
-// The base is not sparse: plain rounding.
+// Rounds without a dead zone, because the base is not sparse.
 std::vector<int32_t> quantize_base(const std::vector<float>& values, float step) {
     std::vector<int32_t> out;
     for (const float v : values)
@@ -136,7 +136,7 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
     const uint32_t steps = pyramid.steps();
     const float base_step = low_band_step(coding.quantizer, steps);
     out.base = quantize_base(pyramid.base, base_step);
-    Pyramid<float> decoded;  // one step: from the image that a decoder has so far to the next
+    Pyramid<float> decoded;  // one step: from the image that a decoder has so far to the next one
     for (const int32_t q : out.base) decoded.base.push_back(static_cast<float>(q) * base_step);
     decoded.levels.resize(1);
     for (uint32_t e = 1; e <= steps; ++e) {

@@ -1,5 +1,4 @@
-// Wavelet bands -> one stream per level of the file: quantization and entropy coding.  spec/gim-format.md,
-// "Coefficients".
+// Quantizes wavelet bands and codes them to one stream per level of the file.  spec/gim-format.md, "Coefficients".
 #pragma once
 
 #include <cstdint>
@@ -12,28 +11,28 @@
 
 namespace gim {
 
-// Integer bands of one image: divided by their band's step and rounded with a dead zone. Details in frames are those of
-// the image that a decoder has at that step.
+// Integer bands of one image: values are divided by the step of their band and rounded with a dead zone. Frames of
+// details come from the image that a decoder has at that step.
 struct QuantizedImage {
     Pyramid<int32_t> bands;
-    std::vector<float> image;  // with details in frames: what a decoder makes of them, up to rounding; else empty
+    std::vector<float> image;  // details in frames: the decoded image, up to rounding; else empty
 };
-// seams: of a square whose mates share their details; they get the mean of both.
+// seams: of a square whose mates share their details; shared details become the mean of both.
 QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding,
                               const SeamTable* seams = nullptr);
 
-// Positions' base is stored relative to the middle of their range.
+// The base of positions is stored relative to the middle of their range.
 template <class Sample>
 void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {
     for (Sample& v : pyramid->base) v -= static_cast<Sample>(1 << (bits - 1));
 }
 
-// The base, if from_step is 0, and the bands of the steps after `from_step` that lead to a level (0: full resolution).
+// Codes the bands of the steps from `from_step` up to a level (0: full resolution), and the base if from_step is 0.
 void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,
                 const SeamTable* seams = nullptr);
 
-// Streams of the image's levels, coarsest first. level_count: 1 .. exponent of the side; the first stream holds the
-// base and all coarser bands.
+// Returns the streams of the image's levels, coarsest first. The first stream holds the base and all coarser bands.
+// level_count: 1 .. exponent of the side.
 std::vector<std::vector<uint8_t>> code_bands(Pyramid<int32_t>& pyramid, uint32_t level_count,
                                              CoefficientKind kind = CoefficientKind::kPlain,
                                              const SeamTable* seams = nullptr);

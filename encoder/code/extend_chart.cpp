@@ -7,7 +7,8 @@ namespace gim {
 
 namespace {
 
-// Half the samples each way, undefined ones filled with the mean of those below, until nothing is undefined; and back.
+// Fills undefined samples. Halves the grid in both directions, with the mean of the defined samples, until no sample is
+// undefined. Then copies values back to the undefined samples of each finer grid.
 void pull_push(std::vector<float>& values, std::vector<float> weights, uint32_t columns, uint32_t rows) {
     if (std::all_of(weights.begin(), weights.end(), [](float w) { return w > 0; }) || (columns == 1 && rows == 1))
         return;
@@ -45,7 +46,7 @@ template <class Sample>
 void drop_small(Pyramid<Sample>& pyramid, double threshold) {
     for (uint32_t e = 0; e < pyramid.steps(); ++e) {
         const uint32_t depth = pyramid.steps() - e;
-        // About equal errors in the image: as the norms of lifting.h, which those of the 5/3 wavelet are near.
+        // Gives about equal errors in the image. Uses the norms of lifting.h; those of the 5/3 wavelet are similar.
         const auto shrink = [&](std::vector<Sample>& band, Orientation orientation) {
             const auto most = static_cast<Sample>(band_step(static_cast<float>(threshold), depth, orientation));
             for (Sample& v : band) {

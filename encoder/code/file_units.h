@@ -1,4 +1,4 @@
-// The units of a file: its quantizer's steps, and how positions are counted in them.  spec/gim-format.md, "Header".
+// The units of a file: the steps of its quantizer, and positions counted in them.  spec/gim-format.md, "Header".
 #pragma once
 
 #include <algorithm>
@@ -13,17 +13,17 @@
 
 namespace gim {
 
-// Bits, origin and step: one isotropic step for the bounding box of all positions.
+// Returns bits, origin and step: one isotropic step for the bounding box of all positions.
 Units units_of_box(std::span<const std::span<const Vec3>> positions, uint32_t bits);
 
-// How the details of lossy files are coded: in frames, tangential steps this many times the normal ones. The reference
-// area is the mean over the cells of all grids; cells with a sample that is not defined do not count.
+// Lossy files code details in frames. Tangential steps are this many times the normal ones. The reference area is the
+// mean over the cells of all grids; cells with an undefined sample do not count.
 inline constexpr double kTangentialRatio = 3;
 class CellArea {
   public:
     // defined: empty, or per sample.
     void add(std::span<const Vec3> positions, std::span<const uint8_t> defined, uint32_t columns, uint32_t rows);
-    // Sets tangential ratio and cell area of units whose step is known.
+    // Sets tangential ratio and cell area of the units, whose step must be set.
     void set_details(Units* units) const;
 
   private:
@@ -31,10 +31,10 @@ class CellArea {
     uint64_t cells_ = 0;
 };
 
-// The nearest quantizer that the format takes.
+// Returns the nearest quantizer that the format can hold.
 float quantizer_in_range(double quantizer);
 
-// Positions as interleaved triples in units. Whole numbers are rounded and kept in the range of the bits.
+// Returns positions as interleaved triples in units. Integers are rounded and clamped to the range of the bits.
 template <class Sample>
 std::vector<Sample> to_units(std::span<const Vec3> positions, const Units& units) {
     std::vector<Sample> samples;

@@ -1,4 +1,4 @@
-// The one writer of files: it owns header, level errors, planes and text. Layouts add their seams and levels as a LevelCoder.
+// The only writer of files. Owns header, level errors, planes and text. A layout adds seams and levels as a LevelCoder.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,25 @@
 namespace gim {
 
 struct CodingParameters {
-    bool lossless = true;  // the quantized image is kept exactly
+    bool lossless = true;  // keeps the quantized image exactly
     uint32_t bits = 12;    // quantizer: bits per coordinate of the largest box extent, 8..20
     double quantizer = 8;  // lossy: step of a coefficient of unit norm, in quantization steps; twice: about 6 dB less
-    uint32_t base_side = 17;         // squares: side of the coarsest stored level; smaller ones cost about 7 bytes each
+    uint32_t base_side = 17;  // squares: side of the coarsest stored level; each smaller level adds about 7 bytes
     std::vector<CodedPlane> planes;  // stored behind the levels
-    std::string text;                // goes into a META chunk unless empty; UTF-8
-    std::optional<Units> units;      // lossy: of a fit, instead of the images' own
+    std::string text;                // UTF-8; goes into a META chunk unless empty
+    std::optional<Units> units;      // lossy: units of a fit, used instead of those of the images
     bool level_psnr = false;         // leaves room in the header for set_level_psnr
 };
 
-// What a layout codes. All that does not depend on the quantizer is done once, so that a search over quantizers is cheap.
+// Codes the images of a layout. Work that does not depend on the quantizer is done once, to make searches cheap.
 class LevelCoder {
   public:
     virtual ~LevelCoder() = default;
-    // Layout, coding, sizes, levels and units. Its spans point into the coder.
+    // Returns layout, coding, sizes, levels and units. The spans of the header point into the coder.
     virtual Header header() const = 0;
-    // The payload of the SEAM chunk.
+    // Returns the payload of the SEAM chunk.
     virtual std::vector<uint8_t> seam_payload() const = 0;
-    // Payloads of the levels, coarsest first. header: the file's, with its quantizer. O(samples).
+    // Returns the payloads of the levels, coarsest first. header: that of the file, with its quantizer. O(samples).
     virtual std::vector<std::vector<uint8_t>> code_levels(const Header& header) const = 0;
 };
 
@@ -44,9 +44,9 @@ class FileWriter {
   public:
     FileWriter(std::unique_ptr<LevelCoder> coder, const CodingParameters& parameters);
 
-    // quantizer: of lossy coding; lossless coding ignores it. O(samples).
+    // Returns the file. Lossless coding ignores the quantizer. O(samples).
     std::vector<uint8_t> write(double quantizer) const;
-    // Of the file for that quantizer, without what depends on its contents. Points into the writer.
+    // Returns the header of that file, without fields that depend on its contents. Its spans point into the writer.
     Header header(double quantizer) const;
 
   private:
@@ -56,12 +56,12 @@ class FileWriter {
     std::string text_;
 };
 
-// Images as wavelet bands, of integers or not yet quantized, base values relative to the middle of their range.
+// Images as wavelet bands: integers, or floats not yet quantized. The base is relative to the middle of its range.
 struct ImageBands {
     std::vector<Pyramid<int32_t>> lossless;
     std::vector<Pyramid<float>> lossy;
 
-    // Integer bands of an image. seams: of a square whose mates share their details.
+    // Returns the integer bands of an image. seams: of a square whose mates share their details.
     Pyramid<int32_t> quantized(size_t image, const Header& header, const SeamTable* seams = nullptr) const;
 };
 

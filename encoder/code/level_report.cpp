@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kSamples = 100000;  // each way; enough for half a decibel many times over
 
-// The sizes of one level; width 0 where no image has it.
+// Returns the sizes of one level; width is 0 if no image has the level.
 Result<LevelReport> describe_level(const Decoder& decoder, uint32_t level) {
     LevelReport report;
     report.level = level;

@@ -1,4 +1,4 @@
-// Every level of a file, decoded and measured against the input.
+// Decodes every level of a file and measures it against the input.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace gim {
 
-// In:  a file of ours, the input's surface, and how the full resolution compares to it (it is not measured again).
-// Out: one entry per level that at least one image can close, finest first. Cost: one decoding and one comparison a level,
-//      coarser levels with fewer samples.
+// In:  our own file, the input's surface, and the comparison at full resolution, which is not measured again.
+// Out: one entry per level at which the seams of at least one image close, finest first.
+// Cost: one decoding and one comparison a level; coarser levels take fewer samples.
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
                                                 const Comparison& full, uint32_t threads);
 
-// PSNR for each level of the file; 0 for those that no image can close.
+// Returns the PSNR for each level of the file; 0 if no image has closed seams at that level.
 std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count);
 
-// Sizes of a complete file. report: numbers of samples and input vertices are known.
+// Sets the sizes of a complete file in the report, which must have the numbers of samples and input vertices.
 void describe_file(std::span<const uint8_t> bytes, EncodeReport& report);
 
 }  // namespace gim

@@ -1,5 +1,5 @@
-// Binary range encoder and raw bits of one stream: the mirror of decoder/pyramid/range_decoder.h.  spec/gim-format.md, "Range
-// coder".
+// Writes range-coded and raw bits into one stream. Mirror of the decoder's range_decoder.h.
+// spec/gim-format.md, "Range coder".
 #pragma once
 
 #include <cstdint>
@@ -41,11 +41,11 @@ class RangeEncoder {
         return value;
     }
 
-    // The stream.
+    // Returns the stream.
     std::vector<uint8_t> finish() {
         if (raw_count_ > 0) back_.push_back(static_cast<uint8_t>(raw_));
-        // As few more bytes of the front as make a number inside the range, given the bytes that follow: the raw part, and
-        // zeros beyond it.
+        // Appends the fewest bytes to the front that make a number inside the range. The bytes that follow are the raw
+        // part, then zeros.
         uint64_t tail = 0;
         for (size_t i = 0; i < 8; ++i) tail = tail << 8 | (i < back_.size() ? back_[back_.size() - 1 - i] : 0u);
         for (uint32_t count = 0;; ++count) {
@@ -83,7 +83,7 @@ class RangeEncoder {
         }
     }
 
-    std::vector<uint8_t> front_, back_;  // back_ in the order of reading
+    std::vector<uint8_t> front_, back_;  // back_: in reading order; finish() reverses it
     uint64_t low_ = 0, range_ = UINT64_MAX;
     uint64_t raw_ = 0;
     uint32_t raw_count_ = 0;

@@ -11,7 +11,7 @@ using Values = RateSearchValues;
 
 double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((75 - quality) / 10 + int(bits) - 12); }
 
-// Into the range that searches cover.
+// Clamps to the range that searches cover.
 double clamped_quantizer(double quantizer) {
     return std::clamp(quantizer, std::exp2(Values::kFinest), std::exp2(Values::kCoarsest));
 }
@@ -31,7 +31,7 @@ double coarser_quantizer(double quantizer, double octaves, double most) {
     return clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -most, most)));
 }
 
-// Scanned surfaces have 68 dB at 16 steps of a 12-bit quantizer.
+// Scanned surfaces have about 68 dB at 16 steps of a 12-bit quantizer.
 double first_quantizer(const RateTarget& target, uint32_t bits) {
     const double of_12_bits = std::exp2(int(bits) - 12);
     if (target.kind == RateTarget::Kind::kPsnr)

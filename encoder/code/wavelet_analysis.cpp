@@ -5,7 +5,7 @@
 namespace gim {
 namespace {
 
-// An odd step on columns; low(i), high(i): rows of `width` values, high(i) the last one also for i == highs.
+// Applies an odd lifting step to columns. low(i), high(i): rows of `width` values. high(highs) is the last high row.
 template <class Wavelet, Direction D, class Low, class High>
 void lift_low_rows(int step, size_t lows, size_t width, const Low& low, const High& high, const SharedRim& rim) {
     const auto [begin, end] = lifted_lows(lows, static_cast<bool>(rim));
@@ -16,7 +16,7 @@ void lift_low_rows(int step, size_t lows, size_t width, const Low& low, const Hi
     if (end < lows) lift_end<Wavelet, D>(step, low(end), width);
 }
 
-// Forward steps on every column: rows are the operands.
+// Applies the forward steps to every column. Whole rows are the operands.
 template <class Wavelet>
 void analyse_columns(typename Wavelet::Sample* image, uint32_t columns, uint32_t rows, const SharedRim& rim) {
     const size_t width = size_t{columns} * 3, lows = low_count(rows), highs = high_count(rows);
@@ -29,7 +29,7 @@ void analyse_columns(typename Wavelet::Sample* image, uint32_t columns, uint32_t
     }
 }
 
-// Splits a row into low and high triples. Both have room for a triple behind, high also before.
+// Splits a row into low and high triples. Both have room for one more triple at the end, high also at the front.
 template <class Wavelet, class Keeps>
 void analyse_row(const typename Wavelet::Sample* row, size_t lows, size_t highs, typename Wavelet::Sample* low,
                  typename Wavelet::Sample* high, const Keeps& keeps) {
@@ -42,7 +42,7 @@ void analyse_row(const typename Wavelet::Sample* row, size_t lows, size_t highs,
     }
 }
 
-// The two undone.
+// The next two undo analyse_columns and analyse_row.
 template <class Wavelet>
 void restore_columns(typename Wavelet::Sample* image, uint32_t columns, uint32_t rows, const SharedRim& rim) {
     const size_t width = size_t{columns} * 3, lows = low_count(rows), highs = high_count(rows);
@@ -143,14 +143,13 @@ std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sa
 
 namespace {
 
-// target[i] -= factor * source[i], the transpose of one half of a lifting step.
+// Subtracts factor * source[i] from target[i]: the transpose of half a lifting step.
 void take_off(float factor, float* __restrict target, const float* __restrict source, size_t count) {
     for (size_t i = 0; i < count; ++i) target[i] -= factor * source[i];
 }
 
-// The lifting steps of restore_row or restore_columns transposed, so in the opposite order, and so that what was read is
-// written. low(i), high(i): operands of `width` floats.
-// span(i): what of low(i) is lifted.
+// Transposes the lifting steps of restore_row or restore_columns: the order is reversed, and operands that were read
+// are written. low(i), high(i): operands of `width` floats. span(i): the part of low(i) that is lifted.
 template <class Low, class High, class Span>
 void transpose_steps(size_t lows, size_t highs, const Low& low, const High& high, size_t width, bool keeps_ends,
                      const Span& span) {

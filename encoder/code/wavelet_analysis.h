@@ -1,6 +1,6 @@
-// Image -> wavelet bands: the mirror of decoder/pyramid/synthesis.h.  spec/gim-format.md, "Wavelets".
+// Splits an image into wavelet bands. Mirror of the decoder's synthesis.h.  spec/gim-format.md, "Wavelets".
 // In:  rows*columns interleaved triples, integers (reversible 5/3) or floats in units (9/7).
-// Out: all bands down to the base. Cost O(samples). Deterministic.
+// Out: all bands down to the base. Cost: O(samples). Deterministic.
 #pragma once
 
 #include <bit>
@@ -23,33 +23,33 @@ struct AnalysisLevel {
 template <class Sample>
 struct Pyramid {
     uint32_t columns = 0, rows = 0;             // of the image
-    std::vector<Sample> base;                   // the image that remains
-    std::vector<AnalysisLevel<Sample>> levels;  // those that lead up from the base, coarsest first
+    std::vector<Sample> base;                   // the coarsest image
+    std::vector<AnalysisLevel<Sample>> levels;  // coarsest first
 
     uint32_t steps() const { return static_cast<uint32_t>(levels.size()); }
-    // Size of the image that the first `step` levels lead to.
+    // Size of the image that the base and the first `step` levels make.
     uint32_t columns_at(uint32_t step) const { return halved(columns, steps() - step); }
     uint32_t rows_at(uint32_t step) const { return halved(rows, steps() - step); }
 };
 
-// columns, rows: before each step 2 or more. seams: of a square that is cut at its cut-nodes (format/rim.h), 9/7 only.
+// columns, rows: at least 2 before each step. seams: of a square that is cut at its cut-nodes (format/rim.h), 9/7 only.
 template <class Wavelet>
 Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t columns, uint32_t rows,
                                           uint32_t steps, const SeamTable* seams = nullptr);
 
-// A square of side 2^j + 1, down to 2 x 2.
+// Splits a square of side 2^j + 1, down to 2 x 2.
 template <class Wavelet>
 Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t side,
                                           const SeamTable* seams = nullptr) {
     return analyse<Wavelet>(std::move(image), side, side, static_cast<uint32_t>(std::countr_zero(side - 1)), seams);
 }
 
-// The image again. The decoder has the inverse that counts (decoder/pyramid/synthesis.h); this one takes bands as analyse gives them.
+// Makes the image again from the bands that analyse() returns. The decoder's synthesis.h is the inverse that counts.
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid,
                                               const SeamTable* seams = nullptr);
 
-// The transpose of restore<Irreversible97> of a square, as a linear map from bands to images.
+// The transpose of restore<Irreversible97> on a square, seen as a linear map from bands to images.
 Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const SeamTable* seams = nullptr);
 
 // The bands of levels[index].

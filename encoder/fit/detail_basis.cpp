@@ -41,7 +41,7 @@ Pyramid<float> unflattened(const std::vector<float>& values, uint32_t side) {
     return pyramid;
 }
 
-// Area over cell_area, back from scale = (cell_area / area)^(1/4).
+// Returns area / cell_area, from scale = (cell_area / area)^(1/4).
 float relative_area_of(const DetailFrame& frame, float cell_area) {
     const float s2 = frame.scale * frame.scale;
     return cell_area > 0 ? 1 / (s2 * s2) : 1;
@@ -60,7 +60,7 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
 
     frames_.assign(4, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
     steps_.assign(4, low_band_step(coding.quantizer, steps));
-    tangential_steps_ = steps_;  // of no use: a base has no tangents
+    tangential_steps_ = steps_;  // unused for the base, which has no tangents
     norms_.assign(4, kBandNorms[steps - 1].low);
     areas_.assign(4, 1);
     for (uint32_t e = 1; e <= steps; ++e) {

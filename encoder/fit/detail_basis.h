@@ -1,8 +1,8 @@
-// An image in the coordinates that lossy files are coded in: the base and the wavelet details of all bands, each detail
-// along the axes of its frame (format/detail_frame.h).
+// An image in the coordinates of lossy files: the base, and the wavelet details of all bands, each along the axes of
+// its frame (format/detail_frame.h).
 //
-// Frames are taken once, from the image that the basis is made for; with them the coordinates are a linear function of
-// the samples, and analysis, synthesis and the synthesis' transpose are mutually consistent linear maps.
+// Frames are made once, from the image that the basis is made for. Then the coordinates are a linear function of the
+// samples. Analysis, synthesis and the transpose of synthesis are consistent linear maps.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,10 @@ namespace gim {
 
 class DetailBasis {
   public:
-    // Coordinates: triples, the base first, then band after band from the coarsest level on; x, y, z of the base, along
-    // normal and two tangents of a detail. All in units.
+    // Triples, in units: the base (x, y, z), then band after band, coarsest level first (normal, two tangents).
     using Coordinates = std::vector<float>;
 
-    // image: side * side interleaved triples, units. coding: in frames.
+    // image: side * side interleaved triples, in units. coding: in frames.
     // seams: of an image whose mates share their details; not copied.
     DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding,
                 const SeamTable* seams = nullptr);
@@ -31,9 +30,9 @@ class DetailBasis {
     // Per coordinate: quantizer step, and the L2 norm of its synthesis function.
     float step(size_t i) const { return is_tangential(i) ? tangential_steps_[i / 3] : steps_[i / 3]; }
     float norm(size_t i) const { return norms_[i / 3]; }
-    // Of a cell at full resolution near the detail, over the coding's cell area.
+    // Area of a full-resolution cell near the detail, divided by the cell area of the coding.
     float relative_area(size_t i) const { return areas_[i / 3]; }
-    // Stands a mate for it? Then it is 0 and has no effect.
+    // Returns true if the detail's mate is used instead. The coordinate is then 0 and has no effect.
     bool is_copy(size_t i) const { return is_copy_[i / 3]; }
     static bool is_tangential(size_t i) { return i >= kBase && i % 3 != 0; }
 
@@ -45,7 +44,7 @@ class DetailBasis {
   private:
     enum class Way { kIntoFrames, kOutOfFrames };
     void turn(Coordinates& coordinates, Way way) const;
-    // Source = weight * (source + copy), copy = 0; out of frames.
+    // Sets source = weight * (source + copy), copy = 0. The coordinates must be out of frames.
     void gather_copies(Coordinates& coordinates, float weight) const;
 
     uint32_t side_;

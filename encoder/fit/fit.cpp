@@ -1,16 +1,16 @@
-// Fitting a geometry image to its surface (fit.h).
+// Fits a geometry image to its surface (fit.h).
 //
-// A round: split the cells; sample both surfaces by area and find the closest points; minimise over the displacements
-// dx
+// A round splits the cells, samples both surfaces by area, and finds the closest points. Then it minimises over the
+// displacements dx:
 //
-//     sum_o w |p - S(x + dx)|^2_W + sum_m w |S(x + dx) - q|^2_W + lambda sum_edges a/4 |T (x_i - x_j)|^2 + mu sum_v a_v
-//     |dx|^2
+//     sum_o w |p - S(x + dx)|^2_W + sum_m w |S(x + dx) - q|^2_W
+//         + lambda sum_edges a/4 |T (x_i - x_j)|^2 + mu sum_v a_v |dx|^2
 //
-// with S(x) the sampled point of the image, p and q points of the reference, W = n n^T + tau (1 - n n^T); n is the face
-// normal where the closest point is inside a face, else the direction to it; T projects on the tangent plane and x_i,
-// x_j run over grid edges; then step as far as the guard allows: no face may turn further away from the reference's
-// normal once it is steep. lambda falls from round to round, and the number of samples rises. Where the start has folds,
-// the first rounds begin with unfolding: the samples around them are relaxed along the surface.
+// S(x) is the sampled point of the image; p and q are points of the reference. W = n n^T + tau (1 - n n^T). n is the
+// face normal if the closest point is inside a face, else the direction to it. T keeps the tangential part. x_i, x_j
+// run over grid edges. Then the round steps as far as the guard allows: no steep face may turn further away from the
+// reference's normal. lambda falls from round to round, and the number of samples rises. If the start has folds, the
+// first rounds begin with unfolding: they relax the samples around folds along the surface.
 //
 // Everything runs in a frame where the reference's bounding box has diagonal 1.
 #include "encoder/fit/fit.h"
@@ -30,10 +30,10 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kUnfoldRounds = 4;  // the first ones of a schedule
-constexpr int kLastUnfoldings = 3;     // of a fit that has more folds than its start, before it is given up
-constexpr double kCreased = 0.06;      // part of a surface at creases above which unfolding may do harm
-constexpr double kUnfoldPrice = 1.06;  // in RMS distance that unfolding may cost: half a decibel
+constexpr uint32_t kUnfoldRounds = 4;  // first rounds of a schedule that unfold
+constexpr int kLastUnfoldings = 3;     // tries to unfold a fit with more folds than its start, before it is dropped
+constexpr double kCreased = 0.06;      // unfolding may do harm if more than this part of the surface is at creases
+constexpr double kUnfoldPrice = 1.06;  // factor of RMS distance that unfolding may cost: half a decibel
 
 struct Schedule {
     double first_lambda, last_lambda;
@@ -41,8 +41,8 @@ struct Schedule {
     double first_density, last_density;  // samples of the reference per face of the image
 };
 
-// The stiff lambda is where files of 65 and 70 dB are smallest (bunny-closed, horse, gargoyle, rocker-arm: 0.03 to 0.05;
-// 0.08 costs about 1 % more, 0.3 costs 4 to 11 % more).
+// The stiff lambda makes files of 65 and 70 dB smallest: 0.03 to 0.05 on bunny-closed, horse, gargoyle and rocker-arm.
+// 0.08 takes about 1 % more bytes, 0.3 takes 4 to 11 % more.
 Schedule schedule_of(const FitOptions& options) {
     Schedule schedule = options.strength == FitOptions::Strength::kStiff ? Schedule{0.05, 0.05, 7, 1.5, 2}
                                                                          : Schedule{0.02, 0.0003, 16, 1, 3.5};
@@ -71,17 +71,18 @@ bool no_worse(const FitQuality& after, const FitQuality& before) {
 
 double distance(const FitQuality& quality) { return std::max(quality.to_image, quality.to_reference); }
 
-// The part of the surface within a mean sample spacing of creases.
+// Returns the part of the surface within a mean sample spacing of creases.
 double crease_share(const Mesh& mesh, double samples) {
     const double area = surface_area(mesh);
     return area > 0 ? 2 * crease_length(mesh) / std::sqrt(area * samples) : 0;
 }
 
-// What the first rounds do besides.
+// What the first rounds do differently.
 struct Plan {
-    uint32_t unfolding;  // so many rounds begin with unfolding
-    uint32_t unguarded;  // so many rounds may fold faces over: samples that are stuck in a bad place get out of it, and
-                         // the guarded rounds that follow unfold more than these have folded
+    uint32_t unfolding;  // number of rounds that begin with unfolding
+    // Number of rounds that may fold faces over. They free samples that are stuck in a bad place. The guarded rounds
+    // that follow unfold more faces than these fold.
+    uint32_t unguarded;
 };
 
 void run_schedule(Fitter& fitter, const Schedule& schedule, const Plan& plan, uint64_t seed, const Progress& progress) {
@@ -105,11 +106,11 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     const FitQuality before = untouched.quality();
     const Schedule schedule = schedule_of(options);
 
-    // An image without folds is kept so from the first round on. Where unfolding costs accuracy, the folds stay.
+    // An image without folds stays so from the first round on. Folds stay if unfolding them costs accuracy.
     std::vector<Plan> plans = {{0, 0}};
     if (before.folds > 0) plans = {{std::min(kUnfoldRounds, schedule.rounds), 0}, {0, schedule.rounds / 2}, {0, 0}};
-    // Samples that are relaxed along the surface leave its creases, and not all of them find back. Where that may matter,
-    // unfolding has to prove itself against the next plan: when every decibel is wanted, and on machined parts.
+    // Samples that are relaxed along the surface leave its creases, and not all come back. If that may matter,
+    // unfolding is compared with the next plan: for loose fits, and on machined parts.
     const bool compare = before.folds > 0 && !options.thorough &&
                          (options.strength == FitOptions::Strength::kLoose ||
                           crease_share(reference.mesh, static_cast<double>(gluing.defined_count())) > kCreased);
@@ -127,7 +128,7 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
         }
         if (!no_worse(reached, before)) continue;
         if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
-            break;  // the unfolded one is better
+            break;  // the unfolded fit is better
         after = reached;
         for (uint32_t v = 0; v < start.size(); ++v) {
             if (gluing.is_defined(v) && !fitter.held()[v]) result.positions[v] = frame.out_of(fitter.positions()[v]);

@@ -1,16 +1,16 @@
-// A round: linearise the distances (fitter.h) around the samples; minimise over the change y of their coordinates in the
-// codec's own basis (detail_basis.h)
+// A round linearises the distances (fitter.h) around the samples. Then it minimises over the change y of their
+// coordinates in the codec's own basis (detail_basis.h)
 //
 //     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
 //
-// with E the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, c the
-// coordinates now; then step as far as nothing folds over. The price is the quadratic that touches bits(c) =
-// kBits log2(1 + (c / (kNarrow step))^2) at c_i, times what a bit is worth: at high rates a further bit for each coefficient
-// of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
+// E is the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, and c the
+// current coordinates. Then the round steps as far as nothing folds over. The price is the quadratic that touches
+// bits(c) = kBits log2(1 + (c / (kNarrow step))^2) at c_i, times the worth of a bit: at high rates one more bit for
+// each coefficient of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
 //
-// The last rounds hold the tangential details at what the quantizer makes of them. So do some in between: what a coarse
-// quantizer leaves of the details is a better start than what nobody has quantized yet (8 rounds and 3 held ones: 6 to 8 %
-// more bytes than 16 and 5, two of these in between; still more rounds: 1 to 4 % less).
+// The last rounds hold the tangential details at their quantized values. So do some rounds in between, because the
+// details that a coarse quantizer leaves are a better start than unquantized ones. 8 free rounds and 3 held ones give 6
+// to 8 % more bytes than 16 and 5, two of these in between. Still more rounds give 1 to 4 % less.
 #include "encoder/fit/fit_coded.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ namespace {
 
 using Coordinates = DetailBasis::Coordinates;
 
-// Cycles, then the last rounds; free rounds first, then held ones.
+// Runs the cycles, then the last rounds. Each part runs its free rounds first, then its held ones.
 struct Schedule {
     struct Part {
         int free, held;
@@ -73,7 +73,7 @@ void for_all(size_t count, const Body& body) {
     });
 }
 
-// The mean over each class, in place; image: interleaved triples.
+// Replaces the values of each class by their mean. image: interleaved triples.
 void average_glued(const GridGluing& gluing, std::vector<float>& image) {
     for (const auto& members : gluing.shared) {
         for (size_t k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ void average_glued(const GridGluing& gluing, std::vector<float>& image) {
     }
 }
 
-// The energy of one round as a function of coordinates: P, S and the matrix of the distances in a row.
+// The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
     CoordinateSystem(const FitSystem& system, const DetailBasis& basis, const GridGluing& gluing)
@@ -100,7 +100,7 @@ class CoordinateSystem {
         average_glued(gluing_, image);
         return image;
     }
-    // scale: of the right side.
+    // Returns the right side times `scale`.
     Coordinates right(float scale) const {
         std::vector<float> image(3 * system_.right.size());
         for (size_t i = 0; i < image.size(); ++i)
@@ -131,7 +131,7 @@ class CoordinateSystem {
     Planes in_, out_;
 };
 
-// Conjugate gradients; c: the coordinates now. Returns their change.
+// Returns the change of the coordinates, by conjugate gradients. c: the current coordinates.
 Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coordinates& c, float scale) {
     Coordinates y(c.size(), 0.0f), residual = system.right(scale), z(c.size());
     const auto precondition = [&] { for_all(z.size(), [&](size_t i) { z[i] = prices.inverse[i] * residual[i]; }); };
@@ -187,11 +187,11 @@ struct CodedFit::Impl {
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
     uint32_t side;
-    SeamTable seams;  // as a file has them
+    SeamTable seams;  // as in the file
     std::vector<uint32_t> ring_classes;
     uint64_t seed;
     uint64_t rounds = 0;
-    std::vector<Vec3> cycled_positions;  // of the last final fit before its last rounds, in the frame
+    std::vector<Vec3> cycled_positions;  // from the last final fit, before its last rounds; in the frame
     uint64_t cycled_rounds = 0;
 
     void keep_as_cycled() {
@@ -204,7 +204,7 @@ struct CodedFit::Impl {
         rounds = cycled_rounds;
     }
 
-    // The samples as interleaved triples in units, not rounded; and back.
+    // Returns the samples as interleaved triples in units, not rounded. place_units() is the inverse.
     std::vector<float> samples_in(const Units& units) const {
         std::vector<float> image(3 * fitter.positions().size());
         for (size_t i = 0; i < fitter.positions().size(); ++i) {
@@ -226,14 +226,14 @@ struct CodedFit::Impl {
         fitter.place(frame.into(positions));
     }
 
-    // One round of the head of this file. The membrane of other fits is left out: the price does its work.
+    // Runs one round (see the head of this file). It needs no membrane, because the price does its work.
     void round(const Units& units, Free free) {
         const FitSystem system = fitter.linearise(0, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
         const DetailBasis basis(image, side, coding, &seams);
         const Coordinates c = basis.analyse(image);
-        const auto unit = static_cast<float>(double{units.step} * frame.scale);  // in the frame
+        const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
         CoordinateSystem coordinates(system, basis, gluing);
         const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
         const std::vector<float> change = coordinates.image_of(y);
@@ -242,7 +242,7 @@ struct CodedFit::Impl {
         fitter.take_step(step, true);
     }
 
-    // Samples go where a decoder would put them.
+    // Moves samples to where a decoder would put them.
     void quantize(const Units& units) {
         Pyramid<float> bands = analyse<Irreversible97>(samples_in(units), side, &seams);
         subtract_middle(&bands, units.bits);

@@ -1,11 +1,11 @@
-// Fits the samples of a square image to its surface and to the codec at once: among the images that are equally near to
-// the surface it looks for the one with the shortest file. Samples slide along the surface until the coarser image
-// predicts them, details that are worth less than their bits vanish, and what the coarse quantization of the tangential
-// details does to the surface is made good along the normal.
+// Fits the samples of a square image to its surface and to the codec at once. Among images that are equally near to the
+// surface, looks for the one with the shortest file. Samples slide along the surface until the coarser image predicts
+// them. Details that are worth less than their bits vanish. Moves along the normal make up for the coarse quantization
+// of tangential details.
 //
-// After: Guskov, Vidimce, Sweldens, Schroeder. Normal Meshes. 2000 (samples where the coarser surface predicts them), as a
-// least-squares fit instead of ray casting; the price of a coefficient is that of Candes, Wakin, Boyd. Enhancing Sparsity
-// by Reweighted l1 Minimization. 2008, whose logarithm stands for bits.
+// After: Guskov, Vidimce, Sweldens, Schroeder. Normal Meshes. 2000 (samples lie where the coarser surface predicts
+// them); we fit by least squares instead of casting rays. The price of a coefficient is that of Candes, Wakin, Boyd.
+// Enhancing Sparsity by Reweighted l1 Minimization. 2008; its logarithm stands for bits.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace gim {
 
 class CodedFit {
   public:
-    // Keeps its own copies. start: of width and height 2^j + 1. seams: of the file; mates share their details. `seed`
+    // Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their details. `seed`
     // decides where distances are sampled.
     CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
     ~CodedFit();
@@ -30,14 +30,15 @@ class CodedFit {
     CodedFit& operator=(CodedFit&&) noexcept;
 
     enum class Effort {
-        kSearch,  // finds out about what a quantizer brings
-        kFinal,   // and what its file will hold
-        kAdjust,  // the last rounds of the final fit before again, with a quantizer nearby
+        kSearch,  // quick: shows roughly what a quantizer gives
+        kFinal,   // full: gives the samples of a file
+        kAdjust,  // repeats the last rounds of the last kFinal, at a quantizer nearby
     };
-    // Goes on from where the last call ended (the start, at first). units: of the file to be. Returns the samples, equal where glued; steps fold nothing over, the quantizer may.
-    // The same for any number of threads. Cost: of 257 x 257 samples about 0.3 s a round on two cores, 5, 24 or 9 rounds.
+    // Continues from the end of the last call; the first call begins at the start. units: of the file to come. Returns
+    // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
+    // number of threads. Cost: 5, 24 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
-    // The next call goes on from the start again: samples that a coarse quantizer has heaped up do not come apart.
+    // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();
 
   private:

@@ -1,4 +1,4 @@
-// Which fit an encoding asks for.
+// The fit that the options ask for.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace gim {
 
-// A loose fit multiplies the tangential detail: only what is coded without loss can afford it. Nothing: no fit.
+// Returns nothing if no fit is wanted. Only lossless coding can afford a loose fit, which multiplies tangential detail.
 inline std::optional<FitOptions::Strength> fit_strength(const EncodeOptions& options) {
     switch (options.fit) {
         case FitStrength::kOff:

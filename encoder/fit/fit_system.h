@@ -1,5 +1,5 @@
-// The linear system of a round of fitting: sampled distances, springs and anchors as normal equations for the
-// displacements of the samples.
+// The linear system of a round of fitting: normal equations for the displacements of the samples, from sampled
+// distances, springs and anchors.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace gim {
 
-// One sampled distance: the displacements of three corners should add up, by weight, to `residual`, mostly along
+// One sampled distance. The weighted sum of the displacements of three corners should be `residual`, mostly along
 // `normal`.
 struct Pull {
     uint32_t face = kNone;  // of the image; kNone: no pull
@@ -24,11 +24,11 @@ struct Pull {
 // Normal equations for the displacements of the samples.
 struct FitSystem {
     StencilMatrix matrix;
-    std::vector<Vec3> right;  // per sample; of a glued one, its part of the sum
+    std::vector<Vec3> right;  // per sample; the right side of a class is the sum over its samples
 
     FitSystem(uint32_t width, uint32_t height);
     void add(const Triangle& corners, const Pull& pull);
-    // (dx_i - dx_j) should make up for `difference` = x_i - x_j.
+    // Adds the wish that dx_i - dx_j cancels `difference` = x_i - x_j.
     void add_spring(uint32_t i, uint32_t j, const Eigen::Matrix3d& weight, const Vec3& difference);
     void add_anchor(uint32_t i, const Eigen::Matrix3d& weight, const Vec3& residual);
 };

@@ -25,7 +25,7 @@ std::vector<Vec3> face_normals(const Mesh& mesh) {
     return normals;
 }
 
-// The boundary edges of a mesh, as triangles of no area.
+// Returns the boundary edges of a mesh, as triangles without area.
 Mesh boundary_curve(const Mesh& mesh) {
     Mesh curve{mesh.positions, {}};
     const Topology topology = build_topology(mesh);
@@ -108,7 +108,7 @@ Fitter::Fitter(const std::vector<Vec3>& start, const FitReference& reference, co
       samples_(static_cast<double>(gluing.defined_count())),
       face_hint_(2 * gluing.kind.size(), kNone) {
     if (held_.empty()) held_.assign(x_.size(), false);
-    // A class is held, and at one place, as a whole.
+    // Puts each class at one place, its mean. If one of its samples is held, all are.
     for (const auto& members : gluing_.shared) {
         bool any = false;
         Vec3 mean = Vec3::Zero();

@@ -1,6 +1,5 @@
-// A fit in progress: image and reference, the sampled distances between them as a quadratic energy of the samples'
-// displacements, and steps that fold nothing over.  fit.cpp: the energy; its terms besides the distances are the
-// caller's choice.
+// A fit in progress: image and reference, their sampled distances as a quadratic energy of the samples' displacements,
+// and steps that fold nothing over. fit.cpp explains the energy. The caller chooses its terms other than the distances.
 //
 // Everything runs in a frame where the reference's bounding box has diagonal 1.
 #pragma once
@@ -19,10 +18,10 @@
 
 namespace gim {
 
-// The frame, and the ways into it and out.
+// The frame, with maps into it and out of it.
 struct FitFrame {
     Vec3 middle = Vec3::Zero();
-    double scale = 1;  // of the input's unit
+    double scale = 1;  // frame units per input unit
 
     explicit FitFrame(const Mesh& mesh);
     std::vector<Vec3> into(const std::vector<Vec3>& points) const {
@@ -33,7 +32,7 @@ struct FitFrame {
     Vec3 out_of(const Vec3& point) const { return point / scale + middle; }
 };
 
-// What stays the same from round to round.
+// The reference, prepared once for all rounds.
 struct FitReference {
     Mesh mesh;
     std::vector<Vec3> normals;
@@ -54,65 +53,65 @@ class Fitter {
     const std::vector<Vec3>& positions() const { return x_; }
     const std::vector<bool>& held() const { return held_; }
     FitQuality quality() const;
-    // In the frame; equal within a class.
+    // positions: in the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }
 
-    // Where faces look away from the surface, slides the samples around them along it towards the middle of their
-    // neighbours. Sampling leaves such faces where the map squeezes the surface: its rows are then nearer to each other
-    // than the map of a triangle mesh is smooth. Samples stay near where they were, or those at a tip would slide off it.
+    // Slides the samples around faces that look away from the surface. They move along the surface, towards the middle
+    // of their neighbours. Sampling leaves such faces where the map squeezes the surface: rows are then too near to
+    // each other for the map of a triangle mesh to be smooth. Samples stay near their place; else those at a tip would
+    // slide off it.
     void unfold();
 
-    // Begins a round: the sampled distances, linearised, a damping and a membrane of strength lambda. density: samples of
-    // the reference per face of the image.
+    // Begins a round. Returns the linearised sampled distances, a damping, and a membrane of strength lambda. density:
+    // samples of the reference per face of the image.
     FitSystem linearise(double lambda, double density, uint64_t seed);
-    // Ends it. Goes as far as no sample moves more than half its spacing and, if guarded, no steep cell gets steeper.
+    // Ends a round. Moves no sample more than half its spacing. If guarded, makes no steep cell steeper.
     void take_step(const std::vector<Vec3>& step, bool guarded);
-    // Both, with the least of the energy in between.
+    // Does both, and minimises the energy in between.
     void round(double lambda, double density, uint64_t seed, bool guarded);
 
   private:
-    // Cells with a face that looks, at its centre, away from the reference or nearly so.
+    // Returns cells with a face that looks away, or almost away, from the reference at its centre.
     std::vector<uint32_t> steep_cells(const ImageSurface& image);
 
-    // The corners of cells and of the cells next to them, one sample of each class, ascending; without those that may
-    // not slide.
+    // Returns the corners of the cells and of their neighbours that may slide: one sample of each class, ascending.
     std::vector<uint32_t> samples_around(const std::vector<uint32_t>& cells) const;
 
-    // The samples that are the same surface point as v.
+    // Returns the samples at the same surface point as v.
     std::span<const uint32_t> class_around(const uint32_t& v) const;
 
-    // Moves samples half-way to the mean of their neighbours in rows and columns, along the reference, and no further
-    // than `reach` from their origin.
+    // Moves samples half-way to the mean of their row and column neighbours, along the reference, at most `reach` away
+    // from their origin.
     void relax(const std::vector<uint32_t>& samples, const std::vector<Vec3>& origin, double reach);
 
-    // Area and normal at the samples, over the whole fan of a class.
+    // Finds area and normal at the samples, over the whole fan of a class.
     void find_vertex_frames(const ImageSurface& image);
 
     std::vector<Pull> pulls_from_reference(const ImageSurface& image, double density, uint64_t seed) const;
 
-    // At least one sample in every face, so that each learns which way the reference looks there.
+    // Takes at least one sample in every face, so that each face learns which way the reference looks there.
     std::vector<Pull> pulls_from_image(const ImageSurface& image, double density, uint64_t seed);
 
     void add_membrane(FitSystem& system, double lambda) const;
 
     void add_membrane_edge(FitSystem& system, double lambda, uint32_t i, uint32_t j) const;
 
-    // Samples on the input's boundary: free along the curve, held to it across.
+    // Holds samples on the input's boundary to its curve. They may slide along it.
     void add_boundary(FitSystem& system) const;
 
     Vec3 moved(uint32_t v, const Vec3& step) const;
 
     std::vector<uint32_t> cells_around(const std::vector<uint32_t>& samples) const;
 
-    // Of the given cells, in order, those that would be steep and steeper than now, split as they would then be split.
+    // Returns, in order, the given cells that would be steep and steeper than now. Cells are split as at the target.
     std::vector<uint32_t> cells_that_turn_away(const std::vector<Vec3>& target,
                                                const std::vector<uint32_t>& cells) const;
 
-    // The smaller cosine between the faces of a cell and the reference at their centres. The reference's face that was
-    // near the cell at the beginning of the round tells when there is no need to look.
+    // Returns the smaller cosine between the faces of a cell and the reference at their centres. Skips the search if
+    // the reference face that was nearest at the beginning of the round is clear enough.
     double facing(const std::vector<Vec3>& positions, const std::array<Triangle, 2>& faces, uint32_t cell) const;
 
-    // Cosine above which a face is believed without looking twice.
+    // Cosine above which no search is needed.
     static constexpr double kUnsuspicious = 0.7;
 
     const GridGluing& gluing_;
@@ -122,20 +121,20 @@ class Fitter {
     std::vector<uint32_t> on_boundary_;
     bool has_curve_ = false;
     double front_ = 1;
-    double samples_ = 0;  // defined ones
+    double samples_ = 0;  // number of defined samples
 
-    // Of the round.
+    // State of the round.
     std::vector<double> vertex_area_;
     std::vector<Vec3> vertex_normal_;
     double mean_area_ = 0;
     std::vector<uint32_t> nearest_reference_face_, face_hint_;
 };
 
-// How far an image is from the reference, by fresh samples; folds at the centres of its faces. front: the sign that makes
-// the image face outwards.
+// Measures how far an image is from the reference, by fresh samples, and its folds at the centres of its faces. front:
+// the sign that makes the image face outwards.
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
                    const std::vector<bool>& held, double front);
-// +1 if most of the image's area looks the way the reference does, else -1.
+// Returns +1 if most of the image's area looks the same way as the reference, else -1.
 double front_side(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference);
 
 }  // namespace gim

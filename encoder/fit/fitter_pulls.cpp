@@ -1,4 +1,4 @@
-// The terms of a round: distances sampled from both surfaces, the membrane, the grip of the input's boundary.
+// The terms of a round: distances sampled from both surfaces, the membrane, and the hold on the input's boundary.
 #include <algorithm>
 #include <cmath>
 
@@ -17,8 +17,8 @@ bool is_inside(const std::array<double, 3>& barycentric) {
     return barycentric[0] > 0 && barycentric[1] > 0 && barycentric[2] > 0;
 }
 
-// Runs body(row) for all rows of cells; bodies two rows apart may run at once, so that a body may write to both rows of
-// samples that its cells touch, and everything is added in one order.
+// Runs body(row) for all rows of cells. Only bodies two or more rows apart run at once, so a body may write to both
+// rows of samples that its cells touch, and sums are always added in the same order.
 template <class Body>
 void for_cell_rows(uint32_t cell_rows, const Body& body) {
     for (uint32_t parity = 0; parity < 2; ++parity) {
@@ -30,7 +30,7 @@ void for_cell_rows(uint32_t cell_rows, const Body& body) {
 
 void add_pulls(FitSystem& system, const ImageSurface& image, const std::vector<Pull>& pulls) {
     const uint32_t cell_rows = system.matrix.height() - 1, slots_per_row = 2 * (system.matrix.width() - 1);
-    // Counting sort by row of cells; inside a row the order of the samples.
+    // Counting sort by row of cells. Samples keep their order inside a row.
     std::vector<uint32_t> first(cell_rows + 1, 0);
     const auto row_of = [&](const Pull& pull) { return image.slot[pull.face] / slots_per_row; };
     for (const Pull& pull : pulls) {

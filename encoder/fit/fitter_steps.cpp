@@ -1,4 +1,4 @@
-// The end of a round: how far samples may move without folding a cell.
+// The end of a round: moves samples as far as they fold no cell.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,9 +12,9 @@ namespace gim {
 
 namespace {
 
-constexpr double kSteepest = 0.1;  // cosine below which the guard wakes up
+constexpr double kSteepest = 0.1;  // cosine below which the guard acts
 constexpr int kMostHalvings = 8;
-constexpr int kMostFreezings = 16;  // further rounds of the guard, in which steps are not halved but given up
+constexpr int kMostFreezings = 16;  // further passes of the guard, which drop steps instead of halving them
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Before the rounds: finds cells that look away from the reference, and unfolds them.
+// Finds cells that look away from the reference, and unfolds them. Runs at the beginning of a round.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace gim {
 
 namespace {
 
-constexpr double kUnfolded = 0.2;      // cosine that unfolding is content with
+constexpr double kUnfolded = 0.2;      // cosine from which a cell counts as unfolded
 constexpr int kUnfoldPasses = 4;       // in each round that unfolds
 constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of these rounds
 

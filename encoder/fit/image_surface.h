@@ -1,4 +1,4 @@
-// The surface that an image's samples make, as the fit needs it: faces with normals and areas.
+// The surface of an image's samples, as the fit needs it: faces with normals and areas.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace gim {
 
 struct ImageSurface {
     Mesh mesh;
-    std::vector<uint32_t> slot;  // per face
-    std::vector<Vec3> normals;   // per face; zero where there is no area
+    std::vector<uint32_t> slot;  // per face (GridFaces)
+    std::vector<Vec3> normals;   // per face; zero if it has no area
     std::vector<double> areas;
 
     ImageSurface(const std::vector<Vec3>& positions, const GridGluing& gluing)
@@ -28,12 +28,12 @@ struct ImageSurface {
     ImageSurface(const std::vector<Vec3>& positions, GridFaces faces);
 };
 
-// Whether a corner is marked.
+// Returns whether a corner is marked.
 inline bool touches(const Triangle& t, const std::vector<bool>& marked) {
     return marked[t[0]] || marked[t[1]] || marked[t[2]];
 }
 
-// v at length 1; `otherwise` where it has no direction.
+// Returns v at length 1, or `otherwise` if v has no direction.
 inline Vec3 direction_or(const Vec3& v, const Vec3& otherwise) {
     const double length = v.norm();
     return length > 1e-14 ? Vec3(v / length) : otherwise;

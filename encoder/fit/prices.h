@@ -1,4 +1,4 @@
-// What coordinates cost in the fit to the codec (fit_coded.h), and how its conjugate gradients scale them.
+// The prices of coordinates in the fit to the codec (fit_coded.h), and their scales for its conjugate gradients.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,10 @@ namespace gim {
 enum class Free { kAll, kNormals };
 
 struct Prices {
-    // Per coordinate: the price; 1 / (price + curvature of the distances, about), 0 where held. The second one only decides
-    // how fast the fit converges.
+    // Per coordinate. inverse: about 1 / (price + curvature of the distances), 0 if held; only affects convergence.
     std::vector<float> price, inverse;
 
-    // c: the coordinates now.
+    // c: the current coordinates.
     Prices(const DetailBasis& basis, const DetailBasis::Coordinates& c, float quantizer, Free free);
 };
 

@@ -89,7 +89,7 @@ class Solver {
         double residual2 = 0, residual_z = 0;
     };
 
-    // Blocks of whole rows, as ranges of samples.
+    // Runs body in parallel on blocks of whole rows, given as ranges of samples.
     template <class Body>
     void for_rows(const Body& body) const {
         parallel_blocks(height_, kRowsPerBlock, 0,
@@ -157,7 +157,7 @@ class Solver {
         });
     }
 
-    // z = M^-1 r, and the two products that the next step needs.
+    // Computes z = M^-1 r, and returns the two products that the next step needs.
     Dots precondition(const Planes& r, Planes& z) const {
         std::vector<Dots> partial((height_ + kRowsPerBlock - 1) / kRowsPerBlock);
         parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t block, size_t first, size_t last) {
@@ -205,7 +205,7 @@ class Solver {
 
 }  // namespace
 
-// out[begin..end) += block[begin - block_shift ..) * in[begin + shift ..)
+// Adds to out[begin..end) the product block[begin - block_shift ..) * in[begin + shift ..).
 void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift,
                                const Planes& in, Planes& out) const {
     const auto n = static_cast<ptrdiff_t>(end - begin);
@@ -223,7 +223,7 @@ void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t bl
     }
 }
 
-// A block between two samples is stored with the first of them; each row gathers from itself and its two neighbours.
+// The first of two samples stores the block between them. Each row gathers from itself and its two neighbours.
 void StencilMatrix::multiply(const Planes& in, Planes& out) const {
     const auto width = static_cast<ptrdiff_t>(width_);
     parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {

@@ -1,6 +1,6 @@
-// Symmetric positive definite systems on a grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
-// the eight neighbours, some samples glued into one unknown. Solved by conjugate gradients with a 3 x 3 block
-// Jacobi preconditioner; in floats, plane after plane, so that the loops over a row vectorise.
+// Solves symmetric positive definite systems on a grid: one 3-vector of unknowns per sample, symmetric 3 x 3 blocks to
+// the eight neighbours. Some samples are glued into one unknown. The method is conjugate gradients with a 3 x 3 block
+// Jacobi preconditioner, in floats. Each component has its own array, so that loops over a row vectorise.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace gim {
 // xx, xy, xz, yy, yz, zz.
 using SymmetricBlock = std::array<float, 6>;
 
-// One plane per component.
+// One array per component.
 using Planes = std::array<std::vector<float>, 3>;
 
 class StencilMatrix {
@@ -30,7 +30,7 @@ class StencilMatrix {
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
 
-    // Adds a block between two samples that are neighbours (or one and the same).
+    // Adds a block between two neighbours, or between a sample and itself.
     void add(uint32_t i, uint32_t j, const SymmetricBlock& block, float factor) {
         if (i > j) std::swap(i, j);
         const uint32_t offset = j - i;
@@ -42,7 +42,7 @@ class StencilMatrix {
         for (size_t k = 0; k < 6; ++k) block_[kind][k][i] += factor * block[k];
     }
 
-    // out = matrix * in, each sample an unknown of its own. In parallel.
+    // Computes out = matrix * in, in parallel. Each sample is an unknown of its own.
     void multiply(const Planes& in, Planes& out) const;
 
     enum Kind : size_t { kDiagonal, kEast, kSouth, kSouthEast, kSouthWest, kKinds };
@@ -58,7 +58,7 @@ class StencilMatrix {
 
 struct SolverOptions {
     uint32_t most_steps = 60;
-    double tolerance = 1e-3;  // of the residual, relative to the right side's
+    double tolerance = 1e-3;  // of the residual, relative to the right side
 };
 
 struct Solution {
@@ -66,8 +66,8 @@ struct Solution {
     uint32_t steps = 0;
 };
 
-// `right`: per sample; the right side of a glued unknown is the sum over its class. `fixed` samples keep the value
-// zero, as do undefined ones. At least three columns. The same bits for any number of threads.
+// `right`: per sample; the right side of a glued unknown is the sum over its class. `fixed` and undefined samples get
+// the value zero. The grid needs at least three columns. The result has the same bits for any number of threads.
 Solution solve(const StencilMatrix& matrix, const std::vector<Vec3>& right, const GridGluing& gluing,
                const std::vector<bool>& fixed, const SolverOptions& options);
 

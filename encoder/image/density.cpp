@@ -11,7 +11,7 @@ namespace gim {
 
 namespace {
 
-// Area-weighted mean over the vertices of all faces around each vertex.
+// Returns for each vertex the area-weighted mean over the vertices of all faces around it.
 std::vector<double> average_neighbours(const Mesh& mesh, const std::vector<double>& area,
                                        const std::vector<double>& value) {
     std::vector<double> sum(value.size(), 0.0), weight(value.size(), 0.0);
@@ -44,8 +44,7 @@ VertexAreas vertex_areas(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return areas;
 }
 
-// The need of a vertex is C = e^2 * density^2. It is smoothed, as a vertex that happens to lie on a sample says nothing by
-// itself.
+// The need of a vertex is C = e^2 * density^2. Smoothing makes up for vertices that happen to lie on a sample.
 std::vector<double> importance_of(const Mesh& mesh, const VertexAreas& areas, const std::vector<ClosestPoint>& closest,
                                   const DensityOptions& options) {
     std::vector<double> need(closest.size());

@@ -9,7 +9,7 @@ namespace gim {
 
 namespace {
 
-// Samples that are one surface point, in any order; nothing for a single one.
+// Adds a class of samples that are one surface point, in any order. Ignores a single sample.
 void add_class(std::vector<uint32_t> glued, GridGluing& gluing) {
     if (glued.size() < 2) return;
     std::sort(glued.begin(), glued.end());
@@ -23,8 +23,8 @@ void add_class(std::vector<uint32_t> glued, GridGluing& gluing) {
     gluing.shared.push_back(std::move(glued));
 }
 
-// Rows and columns of a cell's sides are edges of the surface where a triangle of the cell has them and their ends are
-// two points.
+// Finds the edges of the surface along rows and columns. A side of a cell is an edge if a triangle of the cell has it
+// and its ends are two surface points.
 void find_edges(GridGluing& gluing) {
     gluing.edges.assign(gluing.sample_count(), 0);
     const auto join = [&](uint32_t first, uint32_t second, GridGluing::Edge to_second, GridGluing::Edge to_first) {
@@ -45,7 +45,7 @@ void find_edges(GridGluing& gluing) {
     }
 }
 
-// main: whether kShorter is split along the main diagonal.
+// main: whether a kShorter cell is split along the main diagonal.
 CellTriangles triangles_of_cell(CellKind kind, uint32_t first, uint32_t width, bool main) {
     const uint32_t a = first, b = first + 1, c = first + width + 1, d = first + width;
     switch (kind) {

@@ -7,7 +7,7 @@ namespace gim {
 
 namespace {
 
-// Edges that only one triangle has, with the triangle on their left.
+// Returns the edges that only one triangle has. The triangle is on their left.
 std::vector<std::array<uint32_t, 2>> open_edges(const std::vector<Triangle>& triangles) {
     std::vector<std::array<uint32_t, 2>> edges;
     for (const Triangle& t : triangles) {

@@ -1,4 +1,4 @@
-// States on the way for the caller's pictures (Observer).
+// Intermediate states for the caller's pictures (Observer).
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace gim {
 
-// A mesh that is open along its cut, and where its vertices lie in the plane.
+// Shows a mesh that is open along its cut, with its parametrization.
 Snapshot make_snapshot(std::string name, std::string caption, const Mesh& opened,
                        std::vector<std::array<uint32_t, 2>> cut, const std::vector<Vec2>& uv);
 
-// A geometry image as a surface. The cut is where the grid of triangles ends.
+// Shows a geometry image as a surface. The cut is where the grid of triangles ends.
 Snapshot make_snapshot(std::string name, std::string caption, const GeometryImage& image);
 
-// The edges of a closed loop of vertices.
+// Returns the edges of a closed loop of vertices.
 std::vector<std::array<uint32_t, 2>> edges_of_loop(const std::vector<uint32_t>& loop);
 
 }  // namespace gim

@@ -25,7 +25,7 @@ Mesh without_degenerate(const TriangleMesh& mesh, std::vector<uint32_t>* source)
     return out;
 }
 
-// Bilinear; rows and columns repeat.
+// Interpolates bilinearly. Rows and columns repeat.
 Color texel(const TextureImage& image, double u, double v) {
     const double x = u * image.width - 0.5, y = v * image.height - 0.5;
     const double left = std::floor(x), top = std::floor(y);
@@ -47,7 +47,7 @@ Color texel(const TextureImage& image, double u, double v) {
     return color;
 }
 
-// Products of colours are products of light.
+// Colours are multiplied as linear light.
 double to_linear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 double to_srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 

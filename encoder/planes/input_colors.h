@@ -1,4 +1,4 @@
-// The colour of any point of the input's surface: textures and corner colours, found by the closest triangle.
+// The colour of any point of the input's surface, from the textures and corner colours of the closest triangle.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ Result<void> check_appearance(const TriangleMesh& mesh);
 
 class InputColors {
   public:
-    // Keeps a reference to the mesh, whose appearance is sound and not empty. Degenerate triangles are left out: they have no
-    // surface, and cleaning may have moved what lies next to them. O(F log F).
+    // Keeps a reference to the mesh. Its appearance must be valid and not empty. Degenerate triangles are left out:
+    // they have no surface, and cleaning may have moved what lies next to them. O(F log F).
     explicit InputColors(const TriangleMesh& mesh, uint32_t threads = 0);
 
-    // sRGB, 0..255, of surface points: one triple per point. Textures bilinear. O(points log F).
+    // Returns the sRGB colours of surface points, 0..255: one triple per point. Textures are bilinear. O(points log F).
     std::vector<float> at(std::span<const Vec3> points) const;
 
   private:
     std::array<float, 3> color(const ClosestPoint& at) const;
 
     const TriangleMesh& mesh_;
-    std::vector<uint32_t> source_;  // of the tree's triangles: that of the mesh
+    std::vector<uint32_t> source_;  // per triangle of the tree: the triangle of the mesh
     ClosestPointTree tree_;
     uint32_t threads_;
 };

@@ -15,20 +15,20 @@ namespace gim {
 namespace {
 
 constexpr double kQualityOfLossless = 90, kUsualQuality = 75;
-// Quantizer steps at quality 75: levels of 8 bits, and 1/1024 of a unit normal.
+// Quantizer steps at quality 75. Colours: in levels of 8 bits. Normals: in 1/1024 of unit length.
 constexpr double kColorStep = 16, kNormalStep = 64;
 constexpr uint32_t kMostAutomaticSide = 1025;
 
 using Kind = PlaneReport::Kind;
 
-// Smallest 2^j+1 that is not below.
+// Returns the smallest 2^j + 1 that is at least `least`.
 uint32_t grid_side_from(double least) {
     uint32_t side = 5;
     while (side < least && side < kMostAutomaticSide) side = 2 * side - 1;
     return side;
 }
 
-// Four texels per coloured vertex; of textures about half the pixels, because atlases have gaps.
+// Wants four texels per coloured vertex, and about half as many texels as texture pixels, because atlases have gaps.
 uint32_t automatic_color_side(const TriangleMesh& mesh) {
     double wanted = 0;
     if (!mesh.appearance.corner_colors.empty()) wanted = 4.0 * static_cast<double>(mesh.positions.size());
@@ -53,7 +53,7 @@ float quantizer_of(Kind kind, double quality) {
     return std::clamp(static_cast<float>(step), kMinQuantizer, kMaxQuantizer);
 }
 
-// A plane of all images as wavelet bands.
+// One plane of all images, as wavelet bands.
 struct AnalysedPlane {
     Kind kind = Kind::kNormals;
     std::vector<uint8_t> side_exponents;
@@ -102,7 +102,7 @@ struct PlaneMaker::Impl {
         return values;
     }
 
-    // Values of the grid's texels; zero elsewhere. points: of the texels, on the input.
+    // Returns the values of the grid's texels; zero elsewhere. points: the input's points of the texels.
     std::vector<float> plane_values(Kind kind, const TexelGrid& grid, std::span<const ClosestPoint> points) const {
         const std::vector<float> values = samples(kind, points);
         std::vector<float> plane(size_t{grid.columns} * grid.rows * 3, 0.0f);
@@ -117,7 +117,7 @@ struct PlaneMaker::Impl {
         std::vector<AnalysedPlane> planes;
         for (const Kind kind : kinds()) planes.push_back({kind, images.plane_exponents(side_of(kind)), {}});
         for (size_t image = 0; !planes.empty() && image < planes[0].side_exponents.size(); ++image) {
-            TexelGrid grid;  // shared by planes that are equally fine
+            TexelGrid grid;  // planes of the same size share it
             std::vector<ClosestPoint> points;
             std::optional<uint8_t> located;
             for (AnalysedPlane& plane : planes) {

@@ -1,4 +1,5 @@
-// Attribute planes of a run: which are wanted, sampled (sample_planes.h, input_colors.h), coded, and measured when decoded.
+// Attribute planes of a run: decides which are wanted, samples them (sample_planes.h, input_colors.h), codes them, and
+// measures the decoded ones.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +16,18 @@ namespace gim {
 
 class PlaneMaker {
   public:
-    // Keeps references to all. `clean`: the cleaned mesh; `input`: the mesh as read, whose appearance counts. Costs nothing
-    // when the options want no plane.
+    // Keeps references to its arguments. `clean`: the cleaned mesh; `input`: the mesh as read, for its appearance.
+    // Costs nothing if the options want no plane.
     PlaneMaker(const Mesh& clean, const TriangleMesh& input, const EncodeOptions& options);
     ~PlaneMaker();
 
     bool wants_any() const;
 
-    // Planes of all images, one chunk per kind. A --bytes target gets planes of half of its bytes at most, in lower quality
-    // if need be. O(texels log F).
+    // Returns the planes of all images, one chunk per kind. For a --bytes target planes take at most half of the bytes;
+    // their quality is lowered if necessary. O(texels log F).
     std::vector<CodedPlane> make(const PlaneImages& images) const;
 
-    // The planes of a complete file against the input.
+    // Compares the planes of a complete file with the input.
     Result<std::vector<PlaneReport>> measure(std::span<const uint8_t> file) const;
 
   private:

@@ -15,7 +15,7 @@ constexpr uint32_t kMeasuredPoints = 100000;
 
 using Kind = PlaneReport::Kind;
 
-// The grids of all images in one mesh; sample v of the mesh is at texcoords[v].
+// The grids of all images in one mesh. Vertex v has the texture coordinates texcoords[v].
 struct DecodedGrids {
     Mesh mesh;
     std::vector<Vec2> texcoords;
@@ -90,10 +90,10 @@ Vec3 scaled_normal(const Mesh& mesh, uint32_t face) {
     return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
 }
 
-// Points of the input, and where they are on the decoded image.
+// Points of the input, and their places on the decoded images.
 struct Correspondence {
     SurfaceSamples samples;
-    std::vector<uint32_t> image;  // kNone: the nearest face looks the other way, so it is another sheet
+    std::vector<uint32_t> image;  // kNone: the nearest face looks the other way, so it is on another sheet
     std::vector<Vec2> texcoords;
 };
 
@@ -117,7 +117,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
-// How far decoded planes are from the input: of colours the mean squared difference, of normals the mean angle.
+// Compares decoded planes with the input. Colours: mean squared difference. Normals: mean angle.
 double mean_difference(Kind kind, const std::vector<DecodedPlane>& planes, const Correspondence& c,
                        const PlaneReference& reference) {
     std::vector<float> colors;

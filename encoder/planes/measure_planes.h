@@ -1,4 +1,4 @@
-// Planes of a complete file, decoded again and compared with the input.
+// Decodes the planes of a complete file and compares them with the input.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace gim {
 
-// What the planes should show.
+// The attributes that the planes should show.
 struct PlaneReference {
     const Mesh& surface;
     const AttributeSource& normals;
@@ -22,7 +22,7 @@ struct PlaneReference {
     uint32_t threads = 0;
 };
 
-// The file has a plane of each kind. O(samples log F).
+// The file must have a plane of each kind. O(samples log F).
 Result<std::vector<PlaneReport>> measure_planes(std::span<const uint8_t> file, std::span<const PlaneReport::Kind> kinds,
                                                 const PlaneReference& reference);
 

@@ -1,4 +1,4 @@
-// What a layout tells about the planes of its images: where their texels lie on the surface, and how values become bands.
+// What a layout knows about the planes of its images: where texels lie on the surface, and how values become bands.
 #pragma once
 
 #include <cstdint>
@@ -24,19 +24,19 @@ struct TexelGrid {
 class PlaneImages {
   public:
     virtual ~PlaneImages() = default;
-    // Per image how fine its plane is, as the file counts it: `side` texels a side for the largest square, or for a square
-    // of as many samples.
+    // Returns how fine the plane of each image is, as an exponent in the file. `side`: texels per side for the largest
+    // square, or for a square with as many samples as the image.
     virtual std::vector<uint8_t> plane_exponents(uint32_t side) const = 0;
     virtual TexelGrid texel_grid(size_t image, uint8_t exponent) const = 0;
-    // values: a triple per texel of the plane, 0 where it is not on the surface. quantizer: of the plane, in its units.
+    // values: a triple per texel of the plane, 0 if it is not on the surface. quantizer: in units of the plane.
     virtual Pyramid<float> analyse_plane(size_t image, const TexelGrid& grid, std::vector<float> values,
                                          float quantizer) const = 0;
 };
 
-// Per sample the unit normal of the surface around its point, by area; zero where there is none.
+// Returns the area-weighted unit normal of the surface at each sample; zero if it has none.
 std::vector<Vec3> outside_directions(const GeometryImage& image);
 
-// Unit length, or zero.
+// Returns v at length 1, or zero if v is zero.
 inline Vec3 unit_or_zero(const Vec3& v) {
     const double length = v.norm();
     return length > 0 ? Vec3(v / length) : Vec3::Zero();

@@ -11,7 +11,7 @@ namespace gim {
 namespace {
 
 constexpr size_t kBlock = 4096;
-constexpr size_t kMostFacesForCreases = 64;  // a vertex with more is smooth, so that the cost stays linear
+constexpr size_t kMostFacesForCreases = 64;  // a vertex with more counts as smooth, to keep the cost linear
 
 double corner_angle(const Mesh& mesh, uint32_t h) {
     const Vec3& p = mesh.positions[from(mesh, h)];
@@ -29,7 +29,7 @@ std::vector<Vec3> face_normals(const Mesh& mesh) {
     return normals;
 }
 
-// Half-edges by the vertex that they leave: those of vertex v are at first[v] .. first[v+1]-1.
+// Half-edges sorted by their first vertex. Those of vertex v are at first[v] .. first[v+1]-1.
 struct Corners {
     std::vector<uint32_t> first, half_edges;
 };
@@ -46,8 +46,8 @@ Corners corners_of(const Mesh& mesh) {
     return c;
 }
 
-// Angle-weighted mean of the faces around a corner's vertex that are bent against the corner's own face by less than the
-// crease angle.
+// Returns the normal of each corner: the angle-weighted mean over faces around its vertex, without faces at the crease
+// angle or more from the corner's own face.
 std::vector<Vec3> corner_normals(const Mesh& mesh, uint32_t threads) {
     const std::vector<Vec3> faces = face_normals(mesh);
     const Corners corners = corners_of(mesh);
@@ -93,7 +93,7 @@ Vec3 AttributeSource::face_normal(uint32_t face) const {
     return (mesh_.positions[t[1]] - a).cross(mesh_.positions[t[2]] - a);
 }
 
-// Searches again from further and further outside, as long as what is found looks the other way.
+// Searches again from further and further outside while the face found looks the other way.
 void AttributeSource::keep_to_the_right_side(const Vec3& query, const Vec3& outside, double spacing,
                                              ClosestPoint* found) const {
     if (face_normal(found->triangle).dot(outside) >= 0) return;
@@ -101,7 +101,7 @@ void AttributeSource::keep_to_the_right_side(const Vec3& query, const Vec3& outs
     for (double offset = first; offset <= 8 * first; offset *= 2) {
         const ClosestPoint again = tree_.find(query + offset * outside, found->triangle);
         if (face_normal(again.triangle).dot(outside) <= 0) continue;
-        // Nothing near looks the right way: a fold of the image, or the rim of an open surface.
+        // No near face looks the right way: this is a fold of the image, or the rim of an open surface.
         if ((again.point - query).norm() > 4 * first) return;
         *found = again;
         return;

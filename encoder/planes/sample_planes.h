@@ -1,10 +1,10 @@
-// What the input looks like at the texels of an image: the step between a fitted geometry image and its attribute planes.
+// Finds the input's attributes at the texels of an image: the step from a fitted image to its attribute planes.
 //
-// Fitting slides samples along the surface, so a plane cannot be sampled through the parametrization: a texel belongs to the
-// point that the image's own triangles have there, and takes the attributes of the closest point of the input. Thin sheets
-// have two sides that are both near: one whose face looks the other way is not taken when a search from further outside finds
-// a better one. After: Cohen, Olano, Manocha. Appearance-Preserving Simplification. SIGGRAPH 1998 (maps for a surface that
-// is not the input's); Gu, Gortler, Hoppe. Geometry Images. 2002. Section 3 (attributes at their own resolution).
+// Fitting slides samples along the surface, so a plane cannot be sampled through the parametrization. A texel stands
+// for a point on the image's own triangles, and takes the attributes of the closest point of the input. On a thin sheet
+// both sides are near. If the closest face looks the other way, a search from further outside may find a better one.
+// After: Cohen, Olano, Manocha. Appearance-Preserving Simplification. SIGGRAPH 1998 (maps for a surface other than the
+// input's); Gu, Gortler, Hoppe. Geometry Images. 2002. Section 3 (attributes at their own resolution).
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ class AttributeSource {
     // Keeps a reference to the mesh.
     explicit AttributeSource(const Mesh& mesh, uint32_t threads = 0);
 
-    // The input's point for every texel. O(texels log F).
+    // Returns the input's point for every texel. O(texels log F).
     std::vector<ClosestPoint> locate(std::span<const Texel> texels) const;
 
-    // Unit normals, one triple per point: interpolated within a face, with corners that are smooth over edges bent by less
-    // than kCreaseAngle and sharp over others.
+    // Returns unit normals, one triple per point. They are interpolated within a face. Its corners are smooth over
+    // edges bent by less than kCreaseAngle and sharp over others.
     std::vector<float> normals(std::span<const ClosestPoint> points) const;
     Vec3 normal(const ClosestPoint& point) const;
 
