@@ -25,9 +25,8 @@ namespace gim {
 
 // The adaptive state of one image. It carries over from level to level.
 struct BandModels {
-    static constexpr uint32_t kUnary = 14;  // decisions before the escape
-    static constexpr uint32_t kScaled =
-        15;  // first class with raw bits; it and the next one serve all larger magnitudes
+    static constexpr uint32_t kUnary = 14;   // decisions before the escape
+    static constexpr uint32_t kScaled = 15;  // first class with raw bits; it and the next serve all larger ones
     static constexpr uint32_t kClasses = kScaled + 2;  // of expected magnitude
     static constexpr uint32_t kMaxMagnitudeBits = 25;
 

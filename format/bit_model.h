@@ -1,6 +1,6 @@
 // Adaptive probability of one binary decision, the same for encoder and decoder.  spec/gim-format.md, "Binary models".
 // It averages a quick and a slow estimate. Both learn faster while the model is young.
-// After: the adaptive binary coders of LZMA and HEVC; VVC averages two rates as well.
+// After: the adaptive binary coders of LZMA and HEVC; the averaging of two rates is that of VVC.
 #pragma once
 
 #include <algorithm>
