@@ -1,4 +1,4 @@
-// The same from C++, with gim/decoder.hpp.
+// What a consumer in C does, in C++ with gim/decoder.hpp.
 #include <gim/decoder.hpp>
 
 #include <cstdio>
