@@ -1,4 +1,4 @@
-// What a consumer in C does, in C++ with gim/decoder.hpp.
+// Does what main.c does, in C++ with gim/decoder.hpp.
 #include <gim/decoder.hpp>
 
 #include <cstdio>
