@@ -1,4 +1,4 @@
-// Meshes that every machine has: made by code, asked for by property.
+// Test meshes that code makes, so that every machine has them. Ask for them by property.
 //
 //   for (const CorpusEntry& entry : corpus().valid().closed().genus(1)) check(entry.mesh(), entry.name);
 //
@@ -21,7 +21,7 @@ struct CorpusEntry {
     bool is_valid;  // an oriented 2-manifold without unreferenced vertices
     uint32_t components;
     uint32_t boundary_loops;
-    int genus;          // summed over components; -1 where the mesh is broken
+    int genus;          // summed over components; -1 if the mesh is broken
     std::string fault;  // what is wrong with a mesh that is not valid
 
     TriangleMesh mesh() const { return make(); }
@@ -42,14 +42,14 @@ class Corpus {
     Corpus bounded() const;    // valid, with a boundary
     Corpus genus(int value) const;
 
-    // The entry of that name; a made-up name is a mistake in the caller, answered with an entry whose name is empty.
+    // Returns the entry of that name. An unknown name is the caller's mistake: the entry's name is then empty.
     CorpusEntry named(const std::string& name) const;
 
   private:
     std::vector<CorpusEntry> entries_;
 };
 
-// All of it. Never empty.
+// The whole corpus. Never empty.
 Corpus corpus();
 
 }  // namespace gim::corpus

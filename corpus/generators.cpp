@@ -74,7 +74,7 @@ TriangleMesh cube_surface(int n, const IsOpen& is_open) {
     return mesh;
 }
 
-// From the cube to the unit sphere, evening out the squares.
+// Maps the cube to the unit sphere and evens out the squares.
 void inflate(TriangleMesh& mesh) {
     for (Point& p : mesh.positions) {
         for (double& x : p) x = std::tan(x * pi / 4);
@@ -254,7 +254,7 @@ TriangleMesh melted_tori(uint32_t holes, uint32_t cells) {
             const double from_ring = std::hypot(q[0], q[1]) - ring;
             depth = smooth_union(depth, tube - std::hypot(from_ring, q[2]), 0.05);
         }
-        // The hole between the tori of a ring of three or more would be one too many: fill it.
+        // In a ring of three or more tori, the hole between them would be one too many: fill it.
         if (holes > 2) depth = smooth_union(depth, capsule(p, {0, 0, 0}, {1e-3, 0, 0}, spacing - ring + 0.02), 0.05);
         return depth;
     };
@@ -273,7 +273,7 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
         for (int y = 0; y < count[1]; ++y) {
             for (int x = 0; x < count[0]; ++x) {
                 at.push_back({x * step - half_size[0], y * step - half_size[1], z * step - half_size[2]});
-                // Away from zero, so that no two crossings meet in a lattice point.
+                // Keeps values away from zero, so that no two crossings meet in a lattice point.
                 const double v = inside(at.back());
                 value.push_back(std::abs(v) < 0.1 * step ? std::copysign(0.1 * step, v) : v);
             }
@@ -288,7 +288,7 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
         if (is_new) mesh.positions.push_back(at[a] + (value[a] / (value[a] - value[b])) * (at[b] - at[a]));
         return entry->second;
     };
-    // A triangle facing the outside of `in`, a lattice point inside.
+    // Adds a triangle that faces away from `in`, a lattice point inside.
     const auto add_facing = [&](uint32_t a, uint32_t b, uint32_t c, int in) {
         const Point& p = mesh.positions[a];
         const Point normal = cross(mesh.positions[b] - p, mesh.positions[c] - p);
@@ -301,7 +301,7 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
         if (in.size() == 1)
             add_facing(crossing(in[0], out[0]), crossing(in[0], out[1]), crossing(in[0], out[2]), in[0]);
         if (in.size() == 3) {
-            // All of the plane lies between the three inner corners and the outer one; any of the three tells the side.
+            // The triangle separates the three inner corners from the outer one: any of the three tells the side.
             add_facing(crossing(in[0], out[0]), crossing(in[1], out[0]), crossing(in[2], out[0]), in[0]);
         }
         if (in.size() == 2) {
@@ -311,7 +311,7 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
             add_facing(a, c, d, in[1]);
         }
     };
-    // Each cube as six tetrahedra around its diagonal, one per order in which the axes are walked.
+    // Splits each cube into six tetrahedra around its diagonal, one per order in which the axes are walked.
     constexpr std::array<std::array<int, 3>, 6> kOrders = {
         {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     for (int z = 0; z + 1 < count[2]; ++z) {

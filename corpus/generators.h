@@ -1,5 +1,5 @@
-// Generators of test meshes. Sizes are given by the number of cells along an edge or around; everything has about unit
-// size and faces outwards.
+// Generators of test meshes. Sizes are numbers of cells along an edge or around. Every mesh has about unit size and
+// faces outwards.
 #pragma once
 
 #include <array>
@@ -33,11 +33,11 @@ TriangleMesh terrain(uint32_t n);
 TriangleMesh limbed_blob(uint32_t cells);
 // A ring of `holes` tori melted together, genus `holes`.
 TriangleMesh melted_tori(uint32_t holes, uint32_t cells);
-// Closed surface where `inside` changes sign, as marching tetrahedra see it, in a box around the origin. Positive is
+// The closed surface where `inside` changes sign, by marching tetrahedra in a box around the origin. Positive is
 // inside.
 TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const Point& half_size, uint32_t cells);
 
-// Displaces every vertex along its normal by up to `amplitude`, by hash of its index.
+// Displaces every vertex along its normal by up to `amplitude`: a hash of its index says how far.
 TriangleMesh roughened(TriangleMesh mesh, double amplitude, uint64_t seed);
 // Each triangle with its own three vertices.
 TriangleMesh soup(const TriangleMesh& mesh);

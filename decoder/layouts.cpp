@@ -6,7 +6,7 @@
 namespace gim {
 namespace {
 
-// By FileLayout.
+// In the order of FileLayout.
 constexpr LevelReader kReaders[] = {
     {square_level_info, decode_square_mesh, decode_square_grid, read_square_seams, open_square_plane,
      lay_out_square_plane, close_square_plane},

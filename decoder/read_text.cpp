@@ -1,5 +1,5 @@
-// The META chunk, unpacked into the caller's memory with a zstd context in the caller's scratch: nothing is allocated.
-#define ZSTD_STATIC_LINKING_ONLY  // for contexts in memory of one's own
+// Unpacks the META chunk into the caller's memory. The zstd context is in the caller's scratch: nothing is allocated.
+#define ZSTD_STATIC_LINKING_ONLY  // for contexts in our own memory
 #include <zstd.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The header again, from the bytes: gim_info is the caller's to damage, and holds no pointers.
+// Reads the header again from the bytes: gim_info holds no pointers, and the caller may have damaged it.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace gim {
 
 ContainerLimits limits_of(const gim_limits* limits);
 
-// kBadArgument where the bytes are not those that info was read from.
+// Returns kBadArgument if the bytes are not those that info was read from.
 Status reopen(const gim_info* info, const void* bytes, size_t size, Header* header);
 
 }  // namespace gim

@@ -1,11 +1,11 @@
-// How wavelet coefficients become binary decisions: one traversal, used by encoder and decoder with their own coder.
+// Turns wavelet coefficients into binary decisions. Encoder and decoder share this traversal, each with its own coder.
 // spec/gim-format.md, "Bands" and "Values".
 //
-// A band is a grid of integer triples: x, y, z, or in local frames the normal component and two tangential ones. Blocks of
-// 8x8 triples that are all zero cost one decision. A magnitude is coded against what its decoded neighbours, its parent in
-// the coarser band, the other bands and the components before it let expect: low bits that are noise at this scale are
-// raw, the rest is unary with adaptive models, long ones end in an Elias-gamma code. After: the context modelling of EBCOT
-// / ECECOW reduced to one expected magnitude per component, whose weights were fitted and whose models start trained.
+// A band is a grid of integer triples: x, y, z, or in local frames a normal component and two tangential ones. A block
+// of 8x8 zero triples costs one decision. A magnitude is coded against the one expected from its decoded neighbours,
+// its parent in the coarser band, the other bands and the components before it. Low bits that are noise at this scale
+// are raw. The rest is unary with adaptive models; long ones end in an Elias-gamma code. After: the contexts of EBCOT /
+// ECECOW, reduced to one expected magnitude per component; weights are fitted, models start trained.
 #pragma once
 
 #include <algorithm>
@@ -23,33 +23,33 @@
 
 namespace gim {
 
-// The adaptive state of one image; it goes on from level to level.
+// The adaptive state of one image. It carries over from level to level.
 struct BandModels {
     static constexpr uint32_t kUnary = 14;   // decisions before the escape
-    static constexpr uint32_t kScaled = 15;  // first class that has raw bits; it and the next serve all larger ones
+    static constexpr uint32_t kScaled = 15;  // first class with raw bits; it and the next serve all larger ones
     static constexpr uint32_t kClasses = kScaled + 2;  // of expected magnitude
     static constexpr uint32_t kMaxMagnitudeBits = 25;
 
     explicit BandModels(CoefficientKind coefficients);
-    // In the order of the printed tables.
+    // Calls f(model) for every model, in the order of the tables in the spec.
     template <class F>
     void for_each(F&& f);
 
     CoefficientKind kind;
-    std::array<BitModel, 12> block;  // by the blocks left and above, and by what the parent band has there
-    // The first component; a later one; the last one where the second is not 0.
-    // kUnary of 16, which are quicker to find.
+    std::array<BitModel, 12> block;  // by the blocks left and above, and by the parent band there
+    // Sets: of the first component; of a later one; of the last one if the second is not 0.
+    // Each has kUnary models in an array of 16, which is quicker to index.
     std::array<std::array<std::array<BitModel, 16>, kClasses>, 3> magnitude;
-    std::array<std::array<BitModel, 2>, kClasses> pair;  // in frames: is any tangential component not 0?
+    std::array<std::array<BitModel, 2>, kClasses> pair;  // in frames: whether any tangential component is not 0
     std::array<BitModel, 32> escape;
-    // First or later component; per orientation; by the signs of above, left and parent.
+    // By component (first or later), by orientation, by the signs of above, left and parent.
     std::array<std::array<std::array<BitModel, 27>, 3>, 2> sign;
 };
 
 inline uint32_t sign_class(int32_t v) { return v > 0 ? 1u : v < 0 ? 2u : 0u; }
 
-// Class of an expected magnitude (in 1/256), and how many raw low bits go with it: half-octaves, and from four units on
-// each octave shifts one more bit out, so that what is left has the same distribution.
+// The class of an expected magnitude (in 1/256) and its number of raw low bits. Classes are half-octaves. From four
+// units on, each octave makes one more bit raw, so that the rest keeps the same distribution.
 struct MagnitudeClass {
     uint32_t index = 0, raw_bits = 0;
 };
@@ -62,7 +62,7 @@ constexpr MagnitudeClass compute_magnitude_class(uint32_t expected) {
     const uint32_t above = half_octave - BandModels::kScaled;
     return {BandModels::kScaled + (above & 1), 1 + above / 2};
 }
-// Most are small: a table of those without raw bits.
+// Table of the classes without raw bits: most magnitudes are that small.
 inline constexpr auto kSmallClasses = [] {
     std::array<uint8_t, 256> classes{};
     for (uint32_t i = 0; i < classes.size(); ++i)
@@ -76,21 +76,21 @@ GIM_ALWAYS_INLINE MagnitudeClass magnitude_class(uint32_t expected) {
     return compute_magnitude_class(expected);
 }
 
-// Writes or fills in bands. Coder is a RangeEncoder or a RangeDecoder:
-//   kWrites; uint32_t code_bit(BitModel&, uint32_t bit), code_raw(uint32_t value, uint32_t count); both return what was
-//   coded, and a decoder ignores the value that it is given.
-// All functions return false when a value is too large to be of any writer's making.
+// Writes bands or fills them in. Coder is a RangeEncoder or a RangeDecoder. It has:
+//  kWrites; uint32_t code_bit(BitModel&, uint32_t bit), code_raw(uint32_t value, uint32_t count). Both return what was
+//  coded; a decoder ignores the value that it is given.
+// All functions return false if a value is larger than any that an encoder writes.
 template <class Coder>
 class BandCoder {
   public:
     BandCoder(Coder* coder, BandModels* models, const BandWork& work) : coder_(*coder), models_(*models), work_(work) {}
 
-    // The coarsest image, 2 x 2 of a square.
+    // Codes the coarsest image: 2 x 2 samples of a square.
     bool code_base(const Band& base) {
         return code_band(base, {Orientation::kHorizontal, nullptr, nullptr, nullptr, kBaseWeights, {}});
     }
 
-    // parents: the bands of the next coarser level, or nullptr. Copies of the rim are zero and not coded.
+    // parents: the bands of the next coarser level, or nullptr. Copies on the rim are zero and are not coded.
     bool code_level(const LevelBands& bands, const LevelBands* parents, const SharedRim& rim = {}) {
         const uint32_t columns = bands.horizontal.columns + bands.vertical.columns;
         const uint32_t rows = bands.horizontal.rows + bands.vertical.rows;
@@ -142,7 +142,7 @@ inline BandModels::BandModels(CoefficientKind coefficients) : kind(coefficients)
     });
 }
 
-// *value: in, the magnitude to write; out, the magnitude. not_zero: known beforehand.
+// *value holds the magnitude to write and receives the coded one. not_zero: it is known not to be 0.
 template <class Coder>
 GIM_ALWAYS_INLINE bool code_magnitude(Coder& coder, BandModels& models, uint32_t set, uint32_t expected, bool not_zero,
                                       uint32_t* value) {
@@ -153,7 +153,7 @@ GIM_ALWAYS_INLINE bool code_magnitude(Coder& coder, BandModels& models, uint32_t
     uint32_t magnitude = not_zero && c.raw_bits == 0 ? 1 : 0;
     while (magnitude < BandModels::kUnary && coder.code_bit(unary[magnitude], known_high > magnitude)) ++magnitude;
     if (magnitude == BandModels::kUnary) {
-        // Elias-gamma of what is left, plus one.
+        // The Elias-gamma code of the rest plus one.
         const uint32_t known_left = known_high >= BandModels::kUnary ? known_high - BandModels::kUnary + 1 : 1;
         const uint32_t known_width = static_cast<uint32_t>(std::bit_width(known_left)) - 1;
         uint32_t width = 0;
@@ -170,13 +170,13 @@ GIM_ALWAYS_INLINE bool code_magnitude(Coder& coder, BandModels& models, uint32_t
     return magnitude >> BandModels::kMaxMagnitudeBits == 0;
 }
 
-// One flag per block of the block row that begins at `row`.
+// Codes one flag per block of the block row that begins at `row`.
 template <class Coder>
 void BandCoder<Coder>::code_block_flags(const Band& band, const BandSurroundings& around, uint32_t row) {
     const uint32_t blocks = block_count(band.columns);
     uint32_t left = 1;
     for (uint32_t b = 0; b < blocks; ++b) {
-        uint32_t parents = 0;  // triples that are not zero; three are as good as more
+        uint32_t parents = 0;  // triples that are not zero; more than three count as three
         if (around.parent) {
             const uint32_t end = std::min(around.parent->columns, b * 4 + 4);
             const uint32_t rows_end = std::min(around.parent->rows, row / 2 + 4);
@@ -198,12 +198,12 @@ void BandCoder<Coder>::code_block_flags(const Band& band, const BandSurroundings
     }
 }
 
-// Columns begin .. end-1 of a row, all in blocks that are not empty.
+// Codes columns begin .. end-1 of a row, all in blocks that are not empty.
 template <class Coder>
 bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin,
                                 uint32_t end) {
     expect(around, row, begin, end, work_);
-    // A decoder is copied, so that its state can stay in registers; where it fails, nobody goes on.
+    // A decoder is copied so that its state can stay in registers. After a failure nobody uses it again.
     std::conditional_t<Coder::kWrites, Coder&, Coder> coder = coder_;
     BandModels& models = models_;
     const BandWeights &first = around.weights[0], &later = around.weights[1];
@@ -214,8 +214,8 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
     const int32_t* values_above = row > 0 ? values - size_t{band.columns} * 3 : nullptr;
     const bool has_parent = around.parent && row / 2 < around.parent->rows;
     const int32_t* parents = has_parent ? around.parent->row(row / 2) : nullptr;
-    const uint32_t parents_end = has_parent ? 2 * around.parent->columns : 0;  // columns that have one
-    // The sign of component k, whose magnitude is not 0.
+    const uint32_t parents_end = has_parent ? 2 * around.parent->columns : 0;  // columns before this one have a parent
+    // Codes the sign of component k, whose magnitude is not 0.
     const auto code_sign = [&](uint32_t k, uint32_t column) GIM_ALWAYS_INLINE_LAMBDA {
         const uint32_t i = column * 3 + k;
         const uint32_t above = values_above ? sign_class(values_above[i]) : 0;
@@ -224,10 +224,10 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
         auto& signs = models.sign[std::min(k, 1u)][static_cast<size_t>(around.orientation)];
         return coder.code_bit(signs[(above * 3 + left) * 3 + of_parent], values[i] < 0) != 0;
     };
-    uint32_t left[3] = {0, 0, 0};  // magnitudes of the triple before: what a run begins behind is empty
+    uint32_t left[3] = {0, 0, 0};  // magnitudes of the triple before; a run begins after an empty one
     for (uint32_t column = begin; column < end; ++column) {
         const size_t at = size_t{column} * 3;
-        uint32_t* magnitudes = work_.magnitudes + at;  // of the row above still
+        uint32_t* magnitudes = work_.magnitudes + at;  // still those of the row above
         const uint32_t above1 = magnitudes[1], above2 = magnitudes[2];
         std::fill_n(magnitudes, 3, 0u);
         if (has_copies && (!across || column == 0 || column + 1 == band.columns) &&
@@ -266,7 +266,7 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
     return true;
 }
 
-// Of a row that has magnitudes of the row above there: that one belongs to other blocks.
+// Clears the magnitudes in empty blocks. They are still those of the row above, which belongs to other blocks.
 template <class Coder>
 void BandCoder<Coder>::clear_empty_blocks(uint32_t columns) {
     for (uint32_t begin = 0; begin < columns; begin += 8) {
@@ -278,7 +278,7 @@ void BandCoder<Coder>::clear_empty_blocks(uint32_t columns) {
 template <class Coder>
 bool BandCoder<Coder>::code_band(const Band& band, const BandSurroundings& around) {
     const uint32_t blocks = block_count(band.columns);
-    std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // with the room on either side
+    std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // includes the margin at either end
     std::fill_n(work_.full_above, blocks, 1u);
     for (uint32_t row = 0; row < band.rows; ++row) {
         if (row % 8 == 0) code_block_flags(band, around, row);

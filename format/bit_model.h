@@ -1,5 +1,5 @@
-// Adaptive probability of one binary decision, the same in both directions.  spec/gim-format.md, "Binary models".
-// Two estimates, a quick and a slow one, are averaged; both learn faster while the model is young.
+// Adaptive probability of one binary decision, the same for encoder and decoder.  spec/gim-format.md, "Binary models".
+// It averages a quick and a slow estimate. Both learn faster while the model is young.
 // After: the adaptive binary coders of LZMA and HEVC; the averaging of two rates is that of VVC.
 #pragma once
 
@@ -13,15 +13,15 @@ namespace gim {
 class BitModel {
   public:
     BitModel() : BitModel(32768, 0) {}
-    // That starts as if it had learnt this much.
+    // Starts as if it had learnt this probability from `age` decisions.
     constexpr BitModel(uint16_t zero_probability, uint8_t age)
         : state_(zero_probability * uint64_t{0x10001} | uint64_t{age} << 32) {}
 
     // Probability of a zero in 1/65536, 1 .. 65535.
     uint32_t zero_probability() const { return (quick() + slow()) >> 1; }
 
-    // x >> shift is written x * 2^(16 - shift) >> 16, which is quicker. Neither estimate carries over into its neighbour: both
-    // stay within 1 .. 65535, because the shifts round towards the old value.
+    // x >> shift is computed as x * 2^(16 - shift) >> 16, which is quicker. Shifts round towards the old value, so both
+    // estimates stay within 1 .. 65535 and neither carries over into the other.
     void update_zero() {
         const Learning learning = kLearning[age()];
         const uint32_t change =
@@ -37,14 +37,14 @@ class BitModel {
 
   private:
     struct Learning {
-        uint64_t next_age;     // in place
-        uint32_t quick, slow;  // parts of 65536
+        uint64_t next_age;     // shifted as in state_
+        uint32_t quick, slow;  // in 1/65536
     };
     static constexpr uint8_t kOld = 112;
     static constexpr std::array<Learning, kOld + 1> kLearning = [] {
         std::array<Learning, kOld + 1> all{};
         for (uint32_t age = 0; age <= kOld; ++age) {
-            uint32_t shift = 1;  // 1 + the rounded down log2 of age + 2
+            uint32_t shift = 1;  // 1 + floor(log2(age + 2))
             while ((2 * age + 4) >> (shift + 1) != 0) ++shift;
             all[age] = {uint64_t{std::min<uint32_t>(age + 1, kOld)} << 32, 65536u >> std::min(shift, 4u),
                         65536u >> std::min(shift, 7u)};
@@ -57,7 +57,7 @@ class BitModel {
     uint32_t slow() const { return estimates() >> 16; }
     size_t age() const { return static_cast<size_t>(state_ >> 32); }
 
-    uint64_t state_;  // the quick estimate, the slow one, 16 bits each, and the age
+    uint64_t state_;  // from the low end: quick estimate, slow estimate (16 bits each), age
 };
 
 }  // namespace gim

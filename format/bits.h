@@ -1,4 +1,4 @@
-// Fields of bits, most significant first in each byte.  spec/gim-format.md, "Sidebands".
+// Bit fields; the most significant bit comes first in each byte.  spec/gim-format.md, "Sidebands".
 #pragma once
 
 #include <bit>
@@ -19,7 +19,7 @@ class BitWriter {
             used_ = (used_ + 1) & 7;
         }
     }
-    // A number 0 .. most.
+    // Writes a number in 0 .. most.
     void write_up_to(uint32_t value, uint32_t most) { write(value, std::bit_width(most)); }
 
   private:

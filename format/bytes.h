@@ -8,7 +8,7 @@
 
 namespace gim {
 
-// Every read tells whether the bytes sufficed and the value was well-formed.
+// Every read returns false if the bytes end too early or the value is malformed.
 class ByteReader {
   public:
     explicit ByteReader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
@@ -40,8 +40,8 @@ class ByteReader {
         *value = std::bit_cast<float>(bits);
         return true;
     }
-    // Seven bits a byte, least significant first, bit 7 set on all but the last. Below 2^42; no superfluous last zero
-    // byte.
+    // Seven bits a byte, least significant first; bit 7 is set on all bytes but the last. The value must be below 2^42
+    // and must not end in a superfluous zero byte.
     bool read_leb128(uint64_t* value) {
         *value = 0;
         for (int shift = 0; shift < 42; shift += 7) {

@@ -1,5 +1,4 @@
-// Points between the samples of a grid: the cell they lie in, and the weights of its corners within the triangle that holds
-// them.
+// A point between the samples of a grid: its cell, and the weights of the corners of the triangle that holds it.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +10,9 @@ namespace gim {
 struct CellPoint {
     uint32_t cell = 0;                  // row-major
     double x = 0, y = 0;                // inside the cell, 0..1, along columns and rows
-    std::array<uint32_t, 4> corners{};  // samples: (row, column) of the cell, the next column, the next row, both
+    std::array<uint32_t, 4> corners{};  // samples: at (row, column), in the next column, in the next row, in both
 
-    // Linear over the two triangles. main_diagonal: the cell is split from its first corner to its last.
+    // The weights of linear interpolation over two triangles. main_diagonal splits the cell from first to last corner.
     std::array<double, 4> weights(bool main_diagonal) const {
         if (main_diagonal) {
             if (x >= y) return {1 - x, x - y, 0, y};
@@ -24,7 +23,7 @@ struct CellPoint {
     }
 };
 
-// row, column: 0 .. side-1.
+// row, column: in 0 .. side-1.
 inline CellPoint locate_in_cell(uint32_t side, double row, double column) {
     const uint32_t cells = side - 1;
     const uint32_t r = std::min(static_cast<uint32_t>(row), cells - 1);

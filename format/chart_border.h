@@ -1,11 +1,11 @@
-// The borders of a level's charts, and how they are zipped together: one traversal, used by encoder and decoder with their
-// own coder.  spec/gim-format.md, "Borders".
+// Codes the borders of a level's charts and how they are zipped together. Encoder and decoder share this traversal,
+// each with its own coder.  spec/gim-format.md, "Borders".
 // Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5 (zippering).
 //
-// The paper stores a bitmask. A chart is a disk, so that its border says as much: a closed walk from sample to sample in
-// eight directions, coded as changes of direction (after: Freeman. On the Encoding of Arbitrary Geometric Configurations.
-// 1961), triangles on its left where columns run along x and rows along y. The walk is cut into the chart's paths. Behind a
-// path whose mate is known already stand the steps that zip the two together.
+// The paper stores a bitmask. A chart is a disk, so its border says as much: a closed walk in eight directions, coded
+// as changes of direction (after: Freeman. On the Encoding of Arbitrary Geometric Configurations. 1961). Triangles lie
+// on its left if columns run along x and rows along y. The walk is cut into paths. After it come the steps that zip
+// each path to its mate, if that was coded before.
 #pragma once
 
 #include <array>
@@ -18,26 +18,26 @@ namespace gim {
 
 // One step of a zipper from sample to sample along two mated paths, the second walked backwards.
 enum class ZipStep : uint8_t {
-    kBoth = 0,    // on to the next sample on both sides, which become one surface point
-    kFirst = 1,   // on along the first path: its next sample joins the current point
-    kSecond = 2,  // on along the second
+    kBoth = 0,    // goes on along both: their next samples become one surface point
+    kFirst = 1,   // goes on along the first path: its next sample joins the current point
+    kSecond = 2,  // goes on along the second path, likewise
 };
 
-// Columns and rows counter-clockwise from +column (rows along y).
+// Steps in columns and rows, counter-clockwise from +column if rows run along y.
 inline constexpr std::array<std::array<int32_t, 2>, 8> kDirections{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 struct BorderModels {
     std::array<std::array<BitModel, 4>, 45> turn;    // by the turns before
     std::array<std::array<BitModel, 25>, 2> length;  // of paths without a known mate, and with one
-    std::array<std::array<BitModel, 15>, 2> zip;     // both or not; which of the two
+    std::array<std::array<BitModel, 15>, 2> zip;     // whether kBoth; else which of the other two
 };
 
 // A path at the level that is coded.
 struct BorderPath {
-    uint32_t mate = UINT32_MAX;  // number of the path, or UINT32_MAX
+    uint32_t mate = UINT32_MAX;  // number of the mated path, or UINT32_MAX
     uint32_t length = 0;         // samples from its begin node to its end node, the begin not counted
-    uint32_t first = 0;          // where its begin node stands in `samples` below
+    uint32_t first = 0;          // index of its begin node in BorderChart::samples
     uint32_t chart = 0;
 };
 
@@ -45,22 +45,22 @@ struct BorderPath {
 struct BorderChart {
     uint32_t columns = 0, rows = 0;  // of its box at this level
     uint32_t first_path = 0, path_count = 0;
-    uint32_t border_length = 0;   // filled in
+    uint32_t border_length = 0;   // filled in by a decoder
     uint32_t* samples = nullptr;  // border samples in order, as row * columns + column; room for columns * rows of them
 };
 
-// Coder: as for BandCoder. Everything known beforehand by an encoder is filled in by a decoder. The functions return false
-// for what no writer makes; what they have filled in is then within bounds.
+// Coder: as for BandCoder. An encoder brings charts and paths, a decoder fills them in. The functions return false on
+// borders that no encoder writes; what they have filled in by then is within bounds.
 template <class Coder>
 class BorderCoder {
   public:
     BorderCoder(Coder* coder, BorderModels* models) : coder_(*coder), models_(*models) {}
 
-    // A chart's walk. paths: of all charts.
+    // Codes the walk along a chart's border. paths: of all charts.
     bool code_border(BorderChart& chart, BorderPath* paths);
 
-    // The zipper of a path (`second`) and its mate (`first`), both walked. known(): the next step, called by an encoder only.
-    // glue(i, j): sample i of the first path and sample length - j of the second are one point; also called for (0, 0).
+    // Codes the zipper of a path (`second`) and its mate (`first`), both walked. Only an encoder calls known(), the
+    // next step. glue(i, j) joins sample i of the first path and sample length - j of the second, from (0, 0) on.
     template <class Known, class Glue>
     bool code_zipper(const BorderPath& first, const BorderPath& second, const Known& known, const Glue& glue);
 
@@ -71,7 +71,7 @@ class BorderCoder {
 
     Coder& coder_;
     BorderModels& models_;
-    std::array<int32_t, 3> turns_{};  // the last ones, latest first
+    std::array<int32_t, 3> turns_{};  // the last three, latest first
 };
 
 // ---- implementation ----
@@ -92,7 +92,7 @@ bool BorderCoder<Coder>::code_number(std::array<BitModel, 25>& models, uint32_t*
 template <class Coder>
 bool BorderCoder<Coder>::code_length(BorderPath& path, const BorderPath* paths, uint32_t number) {
     if (path.mate < number) {
-        // The difference to the mate's, signs alternating.
+        // Codes the difference to the mate's length: 0, 1, -1, 2, -2 .. as 0, 1, 2, 3, 4 ..
         const auto expected = static_cast<int32_t>(paths[path.mate].length);
         const int32_t difference = static_cast<int32_t>(path.length) - expected;
         uint32_t coded =
@@ -110,7 +110,7 @@ bool BorderCoder<Coder>::code_length(BorderPath& path, const BorderPath* paths, 
     return true;
 }
 
-// -3 .. 3 eighths of a full turn.
+// Codes a turn of -3 .. 3 eighths of a full turn.
 template <class Coder>
 int32_t BorderCoder<Coder>::code_turn(int32_t known) {
     const auto sign = [](int32_t t) { return t > 0 ? 2u : t < 0 ? 0u : 1u; };
@@ -163,14 +163,14 @@ bool BorderCoder<Coder>::code_border(BorderChart& chart, BorderPath* paths) {
             }
             const uint32_t to_column = column + static_cast<uint32_t>(kDirections[direction][0]),
                            to_row = row + static_cast<uint32_t>(kDirections[direction][1]);
-            if (to_column >= chart.columns || to_row >= chart.rows) return false;  // below 0 wraps round
+            if (to_column >= chart.columns || to_row >= chart.rows) return false;  // numbers below 0 wrap round
             column = to_column;
             row = to_row;
             ++done;
             if (done < capacity) chart.samples[done] = row * chart.columns + column;
         }
     }
-    // A border has three samples, and ends where it began.
+    // A border has three samples at least and ends where it began.
     if constexpr (!Coder::kWrites) chart.border_length = done;
     return done >= 3 && row * chart.columns + column == chart.samples[0];
 }
@@ -181,7 +181,7 @@ bool BorderCoder<Coder>::code_zipper(const BorderPath& first, const BorderPath& 
                                      const Glue& glue) {
     const int64_t a_length = first.length, b_length = second.length;
     const int64_t longer = a_length > b_length ? a_length : b_length;
-    int64_t a = a_length, b = b_length;  // what is left of both
+    int64_t a = a_length, b = b_length;  // steps left on each path
     ZipStep step = ZipStep::kBoth;
     glue(0u, 0u);
     while (a > 0 || b > 0) {

@@ -1,6 +1,6 @@
-// The rule for the diagonals of a chart's cells: as short as can be where that cannot make two edges one, else fixed, so that
-// the connectivity of a glued surface is a manifold or not whatever the positions.  spec/gim-format.md, "Charts".
-// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 3, which takes the shorter one always.
+// The rule for the diagonals of a chart's cells. It takes the shorter one, but a fixed one if a diagonal could double
+// an edge: whether the glued surface is a manifold must not depend on positions.  spec/gim-format.md, "Charts".
+// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 3 always takes the shorter one.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace gim {
 
-// Grid: on_border(row, column) and point(row, column) of defined samples; points compare equal where samples are glued.
+// Grid has on_border(row, column) and point(row, column) for defined samples. Points are equal if samples are glued.
 
-// Would the diagonal from a border sample (row, column) to an inner one double another edge? It may when another of the
-// inner sample's neighbours is the same surface point.
+// Returns whether the diagonal from border sample (row, column) to an inner sample may double another edge. It may if
+// another of the inner sample's neighbours is the same surface point.
 template <class Grid>
 bool chart_diagonal_may_double(const Grid& grid, uint32_t row, uint32_t column, uint32_t inner_row,
                                uint32_t inner_column) {
@@ -25,7 +25,7 @@ bool chart_diagonal_may_double(const Grid& grid, uint32_t row, uint32_t column, 
     return false;
 }
 
-// For a cell with four defined samples. An inner sample has eight defined neighbours.
+// The split of a cell with four defined samples. An inner sample has eight defined neighbours.
 template <class Grid>
 Split chart_split(const Grid& grid, uint32_t row, uint32_t column) {
     const auto joins_border = [&](uint32_t c0, uint32_t c1) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t kMostMargin = 4096;
 
-// Elias gamma: as many zeros as the number has further binary digits, then the number; 1 or more.
+// Elias gamma code of n >= 1: as many zeros as n has binary digits after the first one, then n.
 void write_gamma(uint32_t n, BitWriter* bits) {
     const int width = std::bit_width(n);
     bits->write(0, width - 1);

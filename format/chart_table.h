@@ -1,9 +1,9 @@
-// The chart table of a multi-chart image: how large the charts are, where they lie in the rectangle, how their borders are
-// cut into paths and which paths are one curve on the surface.  spec/gim-format.md, "Chart table".
+// The chart table of a multi-chart image: the size of each chart, its place in the rectangle, the paths of its border,
+// and which paths are one curve on the surface.  spec/gim-format.md, "Chart table".
 // Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Sections 3 and 4.5 (sideband).
 //
-// A chart is an image of its own, in a box somewhat larger than its samples, so that it can be coded and made coarser
-// without regard to its neighbours in the rectangle. Which samples of the box belong to the chart is told level by level
+// A chart is an image of its own, in a box somewhat larger than its samples, so that its neighbours in the rectangle do
+// not matter for coding it and making it coarser. Each level tells which samples of the box belong to the chart
 // (format/chart_border.h).
 #pragma once
 
@@ -23,7 +23,7 @@ inline constexpr uint32_t kMaxChartPaths = 16384;  // of all charts; bounds the 
 inline constexpr uint32_t kMaxChartSide = 32768;
 inline constexpr uint32_t kUnmated = UINT32_MAX;  // a path along an input boundary
 
-// How often a box can be halved so that two samples are left each way; kMaxLevels at most.
+// How often a box can be halved until its shorter side has two samples; at most kMaxLevels.
 uint32_t halvings(uint32_t columns, uint32_t rows);
 
 struct ChartBox {
@@ -35,7 +35,7 @@ struct ChartBox {
     uint32_t steps() const { return halvings(columns, rows); }
 };
 
-// Sizes that hold for a whole level.
+// Sizes of a whole level.
 struct LevelSize {
     uint32_t vertices = 0, triangles = 0;  // of the glued surface
 };
@@ -46,19 +46,19 @@ struct ChartTable {
     std::vector<LevelSize> levels;  // finest first
 };
 
-// Chart by chart from the bytes of the table, trusting none; allocates nothing.
+// Reads the table chart by chart. Trusts no byte and allocates nothing.
 class ChartTableReader {
   public:
-    // The fields before the charts.
+    // Reads the fields before the charts.
     Status open(std::span<const uint8_t> payload, const Header& header, const ContainerLimits& limits);
 
     uint32_t chart_count() const { return chart_count_; }
     const LevelSize& level(uint32_t level) const { return levels_[level]; }
 
-    // The next of chart_count() charts. mates: nullptr, or an array of all paths, in which those of this chart and their
-    // mates are filled in.
+    // Reads the next of chart_count() charts. mates: nullptr, or an array of all paths, whose entries for the paths of
+    // this chart and for their mates are filled in.
     Status next(ChartBox* chart, uint32_t* mates);
-    // After the last: whether every path has found its mate and nothing is left over.
+    // Checks, after the last chart, that every path has found its mate and that nothing is left over.
     Status finish();
     uint32_t path_count() const { return path_count_; }  // of the charts so far
 
@@ -70,7 +70,7 @@ class ChartTableReader {
     uint32_t chart_count_ = 0, level_count_ = 0, margin_ = 0, box_bits_ = 0, width_ = 0, height_ = 0;
     uint64_t most_samples_ = 0, samples_ = 0;
     uint32_t path_count_ = 0, open_count_ = 0;
-    // Paths that wait for their mate, oldest first. Where more do than half of all, some wait in vain.
+    // Paths that wait for their mate, oldest first. If more than half of all paths wait, some wait in vain.
     std::array<uint16_t, kMaxChartPaths / 2> open_{};
 };
 

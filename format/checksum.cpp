@@ -5,7 +5,7 @@
 namespace gim {
 namespace {
 
-// table[k][b]: the effect of byte b followed by k zero bytes, so that eight bytes are taken in one step.
+// table[k][b]: the effect of byte b followed by k zero bytes. With it one step takes eight bytes.
 constexpr auto kCrc32 = [] {
     std::array<std::array<uint32_t, 256>, 8> table{};
     for (uint32_t b = 0; b < 256; ++b) {

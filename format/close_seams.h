@@ -1,5 +1,5 @@
-// Closing seams, whatever the samples lie on: every sample of a surface point becomes the mean of them all, and the
-// correction fades out into the interior along a linear ramp.  spec/gim-format.md, "Fusing", "Charts".
+// Closes seams in any layout: every sample of a surface point becomes the mean of them all, and the correction fades
+// out into the interior along a linear ramp.  spec/gim-format.md, "Fusing", "Charts".
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace gim {
 struct PointWork {
     float* sums = nullptr;        // 3 per point: sum of the differences to the point's first sample
     uint32_t* first = nullptr;    // per point: its first sample
-    uint32_t* members = nullptr;  // per point: how many samples
+    uint32_t* members = nullptr;  // per point: its number of samples
 };
 
-// for_each(f) calls f(sample, point, slot) for every sample of a seam, always in the same order. Each gets the mean
-// over its point, as first + sum(differences) / members: exact when all are equal. corrections[3 * slot] receives what
-// was added. Returns false when no sample changes.
+// Gives each sample of a seam the mean over its point, as first + sum(differences) / members: exact if all are equal.
+// for_each(f) calls f(sample, point, slot) for every sample of a seam, always in the same order. What was added goes to
+// corrections[3 * slot] and the next two. Returns false if no sample changes.
 template <class ForEach>
 bool average_points(const ForEach& for_each, uint32_t point_count, float* samples, float* corrections,
                     const PointWork& work) {
@@ -51,8 +51,8 @@ bool average_points(const ForEach& for_each, uint32_t point_count, float* sample
     return changed;
 }
 
-// What layer `depth` keeps of the correction of the layer outside it. Together a ramp: 1 on the seam, 0 at depth width
-// + 1.
+// The part of its correction that the layer outside passes on to layer `depth`. All layers form a ramp: 1 on the seam,
+// 0 at depth width + 1.
 inline float correction_decay(uint32_t depth, uint32_t width) {
     return static_cast<float>(width + 1 - depth) / static_cast<float>(width + 2 - depth);
 }

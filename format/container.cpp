@@ -26,8 +26,8 @@ bool parse_chunk(ByteReader* reader, Chunk* chunk) {
 
 bool in_range(float value, float low, float high) { return value >= low && value <= high; }  // false for a NaN
 
-// The chunks: SEAM once, then level_count times LEVL, then NRML and COLR at most once each; META at most once anywhere;
-// optional strangers anywhere.
+// Checks the chunks: SEAM once, then level_count times LEVL, then NRML and COLR at most once each. META may stand
+// anywhere, but once; unknown optional chunks may stand anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
     uint32_t seams = 0, levels = 0, texts = 0, normals = 0, colors = 0;
@@ -68,7 +68,7 @@ Status parse_sides(ByteReader* reader, const ContainerLimits& limits, std::span<
     if (!reader->read_leb128(&images) || images == 0 || images > kMaxImages) return Status::kMalformed;
     if (images > limits.max_images) return Status::kLimitExceeded;
 
-    // At least one image has all the levels; all of them together stay within the caller's limit.
+    // At least one image has all levels. All images together stay within the caller's limits.
     const size_t sides_at = reader->position();
     if (!reader->skip(images)) return Status::kMalformed;
     header->side_exponents = file.subspan(sides_at, images);
@@ -106,7 +106,7 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     if (file.size() < kPreambleSize) return Status::kNeedMoreInput;
     if (file[kMagic.size()] != kFormatVersion) return Status::kUnsupportedVersion;
 
-    // The size of header and index comes first, so that nothing else is believed before its checksum.
+    // The size of header and index comes first, so that their checksum is verified before anything else is believed.
     ByteReader preamble(file);
     uint64_t index_size = 0;
     preamble.skip(kPreambleSize);

@@ -1,5 +1,5 @@
 // The container: magic number, header, chunk index.  spec/gim-format.md, "File".
-// Parsing and serialising stand side by side; parsing allocates nothing and trusts nothing.
+// Reads and writes it. Reading allocates nothing and trusts nothing.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace gim {
 
-// The first byte stops text tools, the line ends show conversions, the last one stops a listing (as PNG's does).
+// As in PNG: the first byte stops text tools, the line ends reveal conversions, the last byte stops a listing.
 inline constexpr std::array<uint8_t, 7> kMagic = {0x89, 'G', 'I', 'M', 0x0D, 0x0A, 0x1A};
 inline constexpr uint8_t kFormatVersion = 1;
 
 enum class FileLayout : uint8_t {
-    kSquares = 0,  // gim: an image per component, a square each
+    kSquares = 0,  // gim: one square image per component
     kCharts = 1,   // mcgim: one image of charts (format/chart_table.h)
 };
 
@@ -29,7 +29,7 @@ enum class ChunkType : uint32_t {
     kLevel = 1,    // LEVL, critical: one level of all images; coarsest first
     kText = 2,     // META, optional: UTF-8 text about the file
     kNormals = 3,  // NRML, optional: normals at a resolution of their own (format/plane_code.h)
-    kColors = 4,   // COLR, optional: colours likewise
+    kColors = 4,   // COLR, optional: colours, likewise
 };
 
 struct ContainerLimits {
@@ -47,7 +47,7 @@ inline constexpr float kMaxOrigin = 0x1p100f;                              // gr
 inline constexpr float kMinStep = 0x1p-100f, kMaxStep = 0x1p76f;           // object units per unit
 inline constexpr float kMinQuantizer = 0x1p-16f, kMaxQuantizer = 0x1p20f;  // units
 
-// Area, in units^2, that a header's code stands for: 4, 5, 6 or 7 times a power of two, 2^-18 and more; 0: none.
+// The area, in units^2, that a header's code stands for: 4 .. 7 times a power of two, from 2^-18 on. Code 0: no area.
 constexpr float cell_area_of(uint8_t code) {
     if (code == 0) return 0;
     float area = static_cast<float>(4 + (code & 3)) * 0x1p-20f;
@@ -60,31 +60,31 @@ struct Chunk {
     bool optional = false;  // a reader that does not know the type may skip it
     bool zstd = false;      // the payload is one zstd frame of a text of raw_size bytes
     uint64_t size = 0;
-    uint64_t raw_size = 0;  // only with zstd; otherwise equal to size
+    uint64_t raw_size = 0;  // bytes after decompression; without zstd equal to size
     uint16_t crc = 0;       // of the stored payload
 };
 
-// What a file counts positions and details in. A position is origin + step * unit.
+// The units of a file's positions and details. A position is origin + step * number of units.
 struct Units {
     uint32_t bits = 12;             // of a coordinate along the largest extent of the bounding box
     std::array<float, 3> origin{};  // object space
     float step = 1;                 // object units per unit
-    float quantizer = 0;            // kLossy only, as the next two: step of a coefficient of unit norm, in units
+    float quantizer = 0;            // kLossy only, like the next two: step of a coefficient of unit norm, in units
     uint8_t tangential = 0;  // step of tangential components over that of normal ones, in eighths; 0: details are
                              // not in frames
     uint8_t cell_area = 0;   // code of the area that steps refer to (cell_area_of)
 };
 
-// Header fields as stored; `side_exponents` and `index` point into the parsed bytes.
+// Header fields as stored. The spans point into the parsed bytes.
 struct Header : Units {
     FileLayout layout = FileLayout::kSquares;
     Coding coding = Coding::kLossless;
     uint32_t level_count = 0;
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
-    std::span<const uint8_t> level_psnr;      // empty, or per level, coarsest first: half decibels, 0: not known
+    std::span<const uint8_t> level_psnr;      // empty, or half decibels per level, coarsest first; 0: unknown
 
-    // Derived.
+    // Derived from the file.
     std::span<const uint8_t> index;
     uint32_t chunk_count = 0;
     uint32_t index_size = 0;    // bytes from the start of the file to the first chunk
@@ -101,15 +101,14 @@ struct Header : Units {
     }
 };
 
-// Reads and checks header and index at the start of `file`. kNeedMoreInput only while the index is not there as a
-// whole.
+// Reads and checks header and index at the start of `file`. Returns kNeedMoreInput only if the index is incomplete.
 Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header);
 
 // Walks the index of a parsed header.
 class ChunkWalk {
   public:
     explicit ChunkWalk(const Header& header) : reader_(header.index), offset_(header.index_size) {}
-    // False past the last chunk. `offset`: of the payload, from the start of the file.
+    // Returns false past the last chunk. *offset receives where its payload begins in the file.
     bool next(Chunk* chunk, uint64_t* offset);
 
   private:
@@ -117,20 +116,20 @@ class ChunkWalk {
     uint64_t offset_;
 };
 
-// The payload of a chunk, checked. kNeedMoreInput when the file ends before its end, kChecksum when it is damaged.
+// Checks the payload of a chunk. Returns kNeedMoreInput if the file ends within it, kChecksum if it is damaged.
 Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t offset,
                     std::span<const uint8_t>* payload);
 
-// Bytes from the magic number to the index's checksum. Derived header fields are ignored.
+// Returns the bytes from the magic number to the index's checksum. Ignores derived header fields.
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks);
 
-// The first chunk of a type. False where there is none.
+// Finds the first chunk of a type. Returns false if there is none.
 bool find_chunk(const Header& header, ChunkType type, Chunk* chunk, uint64_t* offset);
 
-// The payload of the SEAM chunk.
+// Finds and checks the payload of the SEAM chunk.
 Status read_seam_payload(const Header& header, std::span<const uint8_t> file, std::span<const uint8_t>* payload);
 
-// The chunk that holds a level of all images.
+// Finds the chunk that holds a level of all images.
 Status find_level_chunk(const Header& header, uint32_t level, Chunk* chunk, uint64_t* offset);
 
 }  // namespace gim

@@ -1,9 +1,9 @@
-// The frame that a lossy detail vector of positions is coded in: the normal and two tangents of the coarser image where
-// the detail belongs, and how its quantizer steps follow the area there.  spec/gim-format.md, "Frames".
+// The frames in which lossy details of positions are coded: the normal and two tangents of the coarser image at the
+// place of the detail. Quantizer steps follow the area there.  spec/gim-format.md, "Frames".
 //
 // After: Zorin, Schroeder, Sweldens. Interactive Multiresolution Mesh Editing. 1997 (details in local frames);
-// Khodakovsky, Guskov. Compression of Normal Meshes. 2003 (tangential details quantized more coarsely). Where the image
-// spreads few samples over much surface, an error of one sample is an error of much surface: steps shrink there.
+// Khodakovsky, Guskov. Compression of Normal Meshes. 2003 (tangential details quantized more coarsely). Steps shrink
+// where the image spreads few samples over much surface: one wrong sample is much wrong surface there.
 #pragma once
 
 #include <algorithm>
@@ -17,22 +17,22 @@
 
 namespace gim {
 
-// How the details of one wavelet step are quantized. Without frames x, y, z have the same step: attribute planes.
+// How the details of one wavelet step are quantized. Without frames (attribute planes) x, y and z have the same step.
 struct DetailSteps {
-    float edge = 1, diagonal = 1;  // normal steps of the bands high in one direction and in both, where scale is 1
+    float edge = 1, diagonal = 1;  // normal steps at scale 1, of bands high in one direction and in both
     bool in_frames = false;
-    float tangential = 1;  // tangential over normal step
-    float cell_area = 0;   // units^2, of a cell of the small image where scale is 1; 0: scale is 1 everywhere
+    float tangential = 1;  // tangential step / normal step
+    float cell_area = 0;   // units^2: a cell of the small image with this area has scale 1; 0: all have
 
     float of(Orientation orientation) const { return orientation == Orientation::kDiagonal ? diagonal : edge; }
 };
 
-// The same of all steps of an image.
+// How the details of all wavelet steps of an image are quantized.
 struct DetailCoding {
     float quantizer = 0;  // units
     bool in_frames = false;
     float tangential = 1;
-    float cell_area = 0;  // of the image at full resolution
+    float cell_area = 0;  // as in DetailSteps, but of the image at full resolution
 
     // depth: 1 for the finest bands.
     DetailSteps steps_at(uint32_t depth) const {
@@ -42,7 +42,7 @@ struct DetailCoding {
     }
 };
 
-// That of the positions of a lossy file.
+// The coding of positions in a lossy file.
 inline DetailCoding detail_coding_of(const Units& units) {
     return {units.quantizer, units.tangential > 0, static_cast<float>(units.tangential) / 8,
             cell_area_of(units.cell_area)};
@@ -54,19 +54,19 @@ inline CoefficientKind coefficient_kind_of(const Units& units) {
 
 struct DetailFrame {
     float axis[3][3];  // unit normal, unit tangent along the row, unit tangent across; right-handed
-    float scale;       // of the normal step
+    float scale;       // of the step along the normal
 };
 
 inline constexpr float kMostAreaRatio = 4096;        // scale: 1/8 .. 8
-inline constexpr uint32_t kLeastScaledSide = 9;      // of small images that tell something about area
-inline constexpr float kLargestFrameUnit = 0x1p40f;  // greater tangents make no frame
+inline constexpr uint32_t kLeastScaledSide = 9;      // smaller images tell nothing about area
+inline constexpr float kLargestFrameUnit = 0x1p40f;  // greater areas and tangents make no frame
 
-// Up to N details, component by component, so that loops over them are vectorised.
+// Up to N details, stored component by component, so that compilers vectorise loops over them.
 template <size_t N>
 struct DetailLanes {
     // Tangents along the row and across.
     float u[3][N] = {}, v[3][N] = {};
-    // Of the frame; axis[a][k]: component k of axis a.
+    // The frame. axis[a][k]: component k of axis a.
     float area[N] = {}, along[N] = {};
     float axis[3][3][N] = {}, scale[N] = {};
 };
@@ -80,8 +80,8 @@ class FrameField {
           rows_(rows),
           cell_area_(std::min(columns, rows) < kLeastScaledSide ? 0 : cell_area) {}
 
-    // Of the detail of that band at (row, column): between its sample of the small image and the next one in the
-    // direction of high frequency.
+    // The frame of a band's detail at (row, column). The detail lies between that sample of the small image and the
+    // next one in the direction of high frequency.
     DetailFrame at(Orientation orientation, uint32_t row, uint32_t column) const {
         DetailLanes<1> one;
         find_tangents(orientation, row, &column, 1, one);
@@ -93,14 +93,14 @@ class FrameField {
         return frame;
     }
 
-    // The two steps of that for many details: first the tangents of those in some columns of a row, for lane `first` and
-    // the next ones, then the frames of all.
+    // Does the same for many details in two steps. find_tangents fills lanes from `first` on with the tangents at some
+    // columns of a row. make_frames then makes the frames of all lanes.
     template <size_t N>
     void find_tangents(Orientation orientation, uint32_t row, const uint32_t* columns, size_t count,
                        DetailLanes<N>& lanes, size_t first = 0) const {
         const float *before = row_at(std::max(row, 1u) - 1), *here = row_at(row),
                     *below = row_at(std::min(row + 1, rows_ - 1));
-        // Over two samples where they exist.
+        // The difference spans two rows if both neighbours exist.
         const float across_rows = row > 0 && row + 1 < rows_ ? 0.25f : 0.5f;
         auto &u = lanes.u, &v = lanes.v;
         for (size_t i = first; i < first + count; ++i) {
@@ -153,7 +153,7 @@ class FrameField {
   private:
     const float* row_at(uint32_t row) const { return image_ + size_t{row} * columns_ * 3; }
 
-    // Of vector i of arrays by component.
+    // Functions of vector i in arrays by component.
     template <size_t N>
     static float squared_length(const float (&a)[3][N], size_t i) {
         return a[0][i] * a[0][i] + a[1][i] * a[1][i] + a[2][i] * a[2][i];
@@ -179,7 +179,7 @@ class FrameField {
         for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
     }
 
-    // 0 for what is not a number, too. Without branches.
+    // Returns 0 for a NaN, too. Has no branches.
     static int makes_frame(float area, float along) {
         return (area > 0x1p-40f) & (along > 0x1p-40f) & (area < kLargestFrameUnit) & (along < kLargestFrameUnit);
     }
@@ -195,7 +195,7 @@ class FrameField {
     float cell_area_;
 };
 
-// Steps of the components of a detail.
+// Quantizer steps of a detail's components.
 inline float normal_step(const DetailSteps& steps, Orientation orientation, float scale) {
     return steps.of(orientation) * scale;
 }
@@ -207,7 +207,7 @@ inline void steps_in(const DetailFrame& frame, const DetailSteps& steps, Orienta
     step[1] = step[2] = tangential_step(steps, orientation);
 }
 
-// Components along the axes -> x, y, z, and back.
+// From components along the axes to x, y, z, and back.
 inline float dot(float a0, float b0, float a1, float b1, float a2, float b2) { return (a0 * b0 + a1 * b1) + a2 * b2; }
 inline void out_of_frame(const DetailFrame& frame, const float* local, float* detail) {
     for (int k = 0; k < 3; ++k)

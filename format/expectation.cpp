@@ -11,7 +11,7 @@ constexpr size_t row_size(uint32_t columns) { return (size_t{columns} + 2) * 3; 
 
 constexpr int32_t kNothing[3] = {0, 0, 0};
 
-// |from|, also where columns begin .. end-1 lie outside the band (by one at most).
+// Writes the magnitudes of columns begin .. end-1 of a row. Columns outside the band, at most one at either end, get 0.
 void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
     const ptrdiff_t inner_begin = std::max<ptrdiff_t>(begin, 0);
     const ptrdiff_t inner_end = row < band.rows ? std::clamp<ptrdiff_t>(band.columns, inner_begin, end) : inner_begin;
@@ -23,7 +23,7 @@ void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t 
     std::fill(to + inner_end * 3, to + end * 3, 0u);
 }
 
-// Adds those of another row.
+// Adds the magnitudes of another row.
 void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
     if (row >= band.rows) return;
     const int32_t* from = band.row(row);
@@ -31,7 +31,7 @@ void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t e
     for (ptrdiff_t i = std::max<ptrdiff_t>(begin, 0) * 3; i < inner_end * 3; ++i) to[i] += magnitude_of(from[i]);
 }
 
-// What the parent and its four neighbours let expect of the two columns that have it, of an even row and the next.
+// Weighs each parent and its four neighbours, for the two columns below it, of an even row and the next.
 void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row, uint32_t begin, uint32_t end,
                    uint32_t* to) {
     const uint32_t inside = row < parent.rows ? std::clamp(parent.columns, begin, end) : begin;
@@ -57,7 +57,7 @@ void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row,
     std::fill(to + size_t{inside} * 6, to + size_t{end} * 6, 0u);
 }
 
-// The sum of all that there is.
+// Sums up all that is expected in a row.
 template <bool kParent, Orientation kOrientation>
 void weigh(const BandWeights* weights, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
     const BandWeights first = weights[0], later = weights[1];

@@ -40,7 +40,7 @@ void diffuse(uint32_t side, uint32_t depth, float decay, float* samples, const f
 }  // namespace
 
 uint32_t diffusion_width(uint32_t side) {
-    const uint32_t innermost = (side - 1) / 2;  // the depth that is a single sample
+    const uint32_t innermost = (side - 1) / 2;  // the ring at this depth is a single sample
     return std::min(std::max(2u, side / 16), innermost - 1);
 }
 

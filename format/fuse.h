@@ -12,18 +12,18 @@ namespace gim {
 // Work space of fuse.
 struct FuseWork : PointWork {
     float* outer = nullptr;  // corrections of one ring, 3 per ring sample
-    float* inner = nullptr;  // and of the next
+    float* inner = nullptr;  // corrections of the next ring
 };
 
-// Only the mean over each class. The corrections are left in work.outer. Returns false when no sample changes. Cost O(side).
+// Only averages each class. Leaves the corrections in work.outer. Returns false if no sample changes. Cost O(side).
 bool average_classes(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples,
                      const FuseWork& work);
 
-// samples: side*side triples. class_of: per ring sample (ring_classes). Nothing changes where equals are equal already.
-// Cost O(side^2 / 4).
+// Averages and spreads. samples: side*side triples. class_of: per ring sample (ring_classes). Changes nothing if glued
+// samples are equal already. Cost O(side^2 / 4).
 void fuse(uint32_t side, const uint32_t* class_of, uint32_t class_count, float* samples, const FuseWork& work);
 
-// How many rings below the rim get a part of the correction.
+// How many rings inside the rim get a part of the correction.
 uint32_t diffusion_width(uint32_t side);
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// Functions that must be inlined for speed, and lambdas: the state that they work on stays in registers.
+// Marks functions and lambdas that must be inlined for speed, so that their state stays in registers.
 #pragma once
 
 #if defined(_MSC_VER) && !defined(__clang__)

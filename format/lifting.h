@@ -1,7 +1,7 @@
 // The two wavelets as lifting steps on rows, and the quantizer steps of their bands.  spec/gim-format.md, "Wavelets".
-// A run of n samples, at least 2, splits into its even ones (low) and its odd ones (high). High sample i lies between low
-// samples i and i+1; one at an end meets its only neighbour twice, which is symmetric extension. After: Daubechies, Sweldens.
-// Factoring Wavelet Transforms into Lifting Steps. 1998 (9/7); Calderbank, Daubechies, Sweldens, Yeo. Wavelet
+// A run of n >= 2 samples splits into its even ones (low) and its odd ones (high). High sample i lies between low
+// samples i and i+1. A sample at an end uses its only neighbour twice (symmetric extension). After: Daubechies,
+// Sweldens. Factoring Wavelet Transforms into Lifting Steps. 1998 (9/7); Calderbank, Daubechies, Sweldens, Yeo. Wavelet
 // Transforms that Map Integers to Integers. 1998 (5/3).
 #pragma once
 
@@ -16,7 +16,7 @@ namespace gim {
 
 enum class Direction { kAnalysis, kSynthesis };
 
-// Reversible 5/3 on integers; sums wrap, so that hostile values are harmless. Shifts round down.
+// Reversible 5/3 on integers. Sums wrap, so that hostile values are harmless. Shifts round down.
 struct Reversible53 {
     using Sample = int32_t;
     static constexpr int kSteps = 2;  // 0: high from low, 1: low from high
@@ -30,14 +30,14 @@ struct Reversible53 {
     }
 };
 
-// 9/7 on binary32, each operation rounded: x + c * (a + b), or minus.
+// 9/7 on binary32: x + c * (a + b), or x - c * (a + b). Each operation rounds.
 struct Irreversible97 {
     using Sample = float;
     static constexpr int kSteps = 4;  // even steps: high from low; odd steps: low from high
     static constexpr std::array<float, 4> kFactor = {-1.586134342f, -0.052980118f, 0.882911076f, 0.443506852f};
-    // Low samples carry this factor inside one level of both directions; outside, a constant image keeps its value.
+    // The gain of low samples within a level, over both directions. Between levels a constant image keeps its value.
     static constexpr float kLowGain = 1.513328328f;
-    // The same of one direction, for those at ends, and its inverse.
+    // The gain of one direction, for low samples at the ends of runs, and its inverse.
     static constexpr float kEndGain = 1.230174105f, kEndLoss = 0.8128931f;
 
     template <Direction D>
@@ -51,7 +51,7 @@ struct Irreversible97 {
 template <class Wavelet, Direction D>
 inline void lift_row(int step, typename Wavelet::Sample* __restrict target, const typename Wavelet::Sample* a,
                      const typename Wavelet::Sample* b, size_t count) {
-    switch (step) {  // a constant step lets the loop be vectorised
+    switch (step) {  // a constant step lets compilers vectorise the loop
         case 0:
             for (size_t i = 0; i < count; ++i) target[i] = Wavelet::template lift<D>(0, target[i], a[i], b[i]);
             break;
@@ -69,7 +69,7 @@ inline void lift_row(int step, typename Wavelet::Sample* __restrict target, cons
 }
 
 // An odd step and the even one after it: low[i] = lift(step, low[i], high[i], next_high[i]), then
-// high[i] = lift(step - 1, high[i], previous_low[i], low[i]). The four do not overlap.
+// high[i] = lift(step - 1, high[i], previous_low[i], low[i]). The four arrays do not overlap.
 template <class Wavelet, Direction D>
 inline void lift_row_pair(int step, typename Wavelet::Sample* __restrict low, typename Wavelet::Sample* __restrict high,
                           const typename Wavelet::Sample* __restrict next_high,
@@ -86,8 +86,8 @@ inline void lift_row_pair(int step, typename Wavelet::Sample* __restrict low, ty
     lift(std::integral_constant<int, 1>{});
 }
 
-// On square images whose rim is shared (format/rim.h) the 9/7 keeps the low samples at the ends of a run, but for their gain:
-// linear runs have no details up to their ends, and the rim is transformed by itself. Elsewhere every low sample is lifted.
+// The low samples that are lifted: all, unless a square shares its rim (format/rim.h). Then the 9/7 only scales those
+// at the ends of a run: linear runs have no details up to their ends, and the rim is transformed by itself.
 struct LiftedRange {
     size_t begin, end;
 };
@@ -95,7 +95,7 @@ inline LiftedRange lifted_lows(size_t lows, bool keeps_ends) {
     return keeps_ends ? LiftedRange{1, lows - 1} : LiftedRange{0, lows};
 }
 
-// What an odd step does to a low sample that is kept: the first one brings it to the gain of the others.
+// What an odd step does to a low sample that is kept: step 1 brings it to the gain of the others, or back.
 template <class Wavelet, Direction D>
 inline void lift_end(int step, typename Wavelet::Sample* low, size_t width) {
     if constexpr (Wavelet::kSteps > 2) {
@@ -105,7 +105,7 @@ inline void lift_end(int step, typename Wavelet::Sample* low, size_t width) {
     }
 }
 
-// What of a run is kept: nothing, its ends, or inner low samples, too.
+// Which low samples of a run are kept: none, those at its ends, or inner ones, too.
 struct KeepsNone {
     static constexpr bool kInner = false;
     bool ends() const { return false; }
@@ -114,7 +114,7 @@ struct KeepsEnds : KeepsNone {
     bool ends() const { return true; }
 };
 
-// An odd step on a run of triples. high has room for a triple before and behind.
+// An odd step on a run of triples. `high` has room for a triple before and after.
 template <class Wavelet, Direction D, class Keeps>
 inline void lift_lows(int step, size_t lows, size_t highs, typename Wavelet::Sample* low,
                       typename Wavelet::Sample* high, const Keeps& keeps) {
@@ -141,8 +141,8 @@ inline void lift_lows(int step, size_t lows, size_t highs, typename Wavelet::Sam
     if (end < lows) lift_end<Wavelet, D>(step, low + 3 * end, 3);
 }
 
-// L2 norms of the 9/7 synthesis functions, `depth` levels (1..14) below full resolution: of the low band, of the two
-// bands high in one direction, of the band high in both.
+// L2 norms of the 9/7 synthesis functions, 1 .. 14 levels below full resolution. low: of the low band. edge: of the two
+// bands high in one direction. diagonal: of the band high in both.
 struct BandNorms {
     float low, edge, diagonal;
 };
@@ -163,7 +163,7 @@ inline constexpr std::array<BandNorms, 14> kBandNorms = {{
     {17378.896f, 8807.09832f, 6754.24277f},
 }};
 
-// Step of a band's uniform quantizer: quantizer / norm. depth 1: the finest bands of the image; 0, of a low band: the image.
+// The step of a band's uniform quantizer: quantizer / norm. Depth 1: the finest bands. Low band of depth 0: the image.
 inline float low_band_step(float quantizer, uint32_t depth) {
     return depth == 0 ? quantizer : quantizer / kBandNorms[depth - 1].low;
 }
@@ -172,8 +172,8 @@ inline float band_step(float quantizer, uint32_t depth, Orientation orientation)
     return quantizer / (orientation == Orientation::kDiagonal ? norms.diagonal : norms.edge);
 }
 
-// The encoder's dead zone makes a bin reach further out than in: a quantized coefficient stands for a value this part
-// of a step beyond its magnitude.
+// The encoder's dead zone makes a bin reach further out than in. So a quantized coefficient stands for a value that is
+// this part of a step beyond its magnitude.
 inline constexpr float kReconstructionShift = 0.0625f;
 
 inline float dequantize(int32_t q, float step) {

@@ -37,7 +37,7 @@ Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint3
     }
     if (largest > limits.max_side || samples > limits.max_samples) return Status::kLimitExceeded;
 
-    // Sizes of the streams; a single image has the rest of the payload.
+    // Sizes of the streams. A single image has the rest of the payload.
     uint64_t offset = 0, size = reader.left(), total = size;
     if (image_count > 1) {
         total = 0;

@@ -1,4 +1,4 @@
-// Attribute planes: the fields of their chunks, and how a triple of samples stands for a normal or a colour.
+// Attribute planes: the fields of their chunks, and how triples of samples stand for normals and colours.
 // spec/gim-format.md, "Planes".
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace gim {
 
-inline constexpr float kNormalUnit = 1024;  // a writer's length of a normal; readers take any
+inline constexpr float kNormalUnit = 1024;  // length of a normal as encoders write it; readers take any
 
 // A plane chunk as stored; the spans point into its payload.
 struct PlaneChunk {
@@ -22,18 +22,18 @@ struct PlaneChunk {
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
 };
 
-// The chunk type of a kind of plane, as gim/decoder.h counts them (0 normals, 1 colours).
+// Kinds of planes, numbered as in gim/decoder.h (0 normals, 1 colours), and their chunk types.
 inline constexpr uint32_t kPlaneKinds = 2;
 inline ChunkType plane_type(uint32_t kind) { return kind == 0 ? ChunkType::kNormals : ChunkType::kColors; }
 
-inline constexpr uint32_t kMaxTexelExponent = 6;  // of charts
+inline constexpr uint32_t kMaxTexelExponent = 6;  // of planes on charts
 
 // Texels along a side of the rectangle of charts.
 constexpr uint64_t chart_plane_side(uint32_t rectangle_side, uint32_t exponent) {
     return (uint64_t{rectangle_side - 1} << exponent) + 1;
 }
 
-// image < header.image_count().
+// Reads the plane of one image. image < header.image_count().
 Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint32_t image,
                    const ContainerLimits& limits, PlaneChunk* plane);
 
@@ -41,8 +41,8 @@ Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint3
 std::vector<uint8_t> serialize_plane(float quantizer, std::span<const uint8_t> side_exponents,
                                      std::span<const std::vector<uint8_t>> streams);
 
-// Luma and two chroma differences of a colour, all in levels of 8 bits; in place. Errors of equal size in the three are
-// about equally bad in the colour.
+// Turns a colour into luma and two chroma differences, in place; all are in 1/255 of the range. Errors of equal size in
+// the three are about equally bad in the colour.
 inline void to_luma(float* c) {
     const float r = c[0], g = c[1], b = c[2];
     c[0] = 0.25f * r + 0.5f * g + 0.25f * b;

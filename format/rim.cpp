@@ -4,7 +4,7 @@ namespace gim {
 
 namespace {
 
-// Ascending in the order of the stream: the first row, the last one, then the two columns row by row.
+// A number that rises in the order of the stream: the first row, the last one, then both columns row by row.
 uint32_t place_in_stream(uint32_t side, uint32_t k) {
     const GridPoint p = ring_point(side, k);
     if (p.row % 2 == 0) return p.row == 0 ? p.column : side + p.column;
@@ -28,7 +28,7 @@ void rim_sources(const SeamTable& seams, uint32_t side, std::span<uint32_t> sour
             const uint32_t a = wrap(seams.first[i] * scale + t), b = wrap(seams.first[mate] * scale + length - t);
             if (is_corner(a)) source[b] = kRunEnd;
             if (is_corner(b)) source[a] = kRunEnd;
-            if (a % 2 == 0) continue;  // then both are
+            if (a % 2 == 0) continue;  // then b is even, too
             place_in_stream(side, a) < place_in_stream(side, b) ? source[b] = a : source[a] = b;
         }
     }

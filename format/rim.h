@@ -1,5 +1,5 @@
-// The details on the rim of a square image, one step of the wavelet up: which of them stand for their mates too, because
-// both are the same piece of a cut-path.  spec/gim-format.md, "Shared details of the rim".
+// The details on the rim of a square image, for one wavelet step. Mates on a cut-path are the same curve, so that one
+// detail stands for both.  spec/gim-format.md, "Shared details of the rim".
 //
 // The rim is transformed by itself, each cut-path as a run of its own (format/lifting.h), so that the two sides of a
 // cut-path have the same details.
@@ -22,13 +22,13 @@ struct DetailPlace {
 
 inline constexpr uint32_t kRunEnd = UINT32_MAX;
 
-// For each odd ring sample of an image of that side the ring index of the one whose detail it takes: itself or, inside a
-// cut-path, its mate if that comes earlier in the stream. For even ones themselves, or kRunEnd: cut-nodes, and the mates of
-// the square's corners, which are ends of runs in any case. source.size() ==
-// ring_length(side). Sides up to the node grid's share nothing and have no cut-nodes. O(side).
+// Finds the source of each ring sample of an image of that side. An odd sample takes the detail of its source: its mate
+// inside a cut-path if that comes earlier in the stream, else itself. An even sample has itself, or kRunEnd at
+// cut-nodes and at the mates of the square's corners (corners end runs in any case). Sides up to the node grid's share
+// nothing and have no cut-nodes. source.size() == ring_length(side). O(side).
 void rim_sources(const SeamTable& seams, uint32_t side, std::span<uint32_t> source);
 
-// View of the sources of one step. Without any, nothing is shared.
+// A view of the sources of one step. An empty one shares nothing.
 class SharedRim {
   public:
     SharedRim() = default;
@@ -36,7 +36,7 @@ class SharedRim {
 
     explicit operator bool() const { return source_ != nullptr; }
 
-    // Does a mate stand for the detail at that place of its band?
+    // Returns whether the mate stands for the detail at that place of its band.
     bool is_copy(Orientation orientation, uint32_t row, uint32_t column) const {
         if (!source_) return false;
         const GridPoint p = sample_of(orientation, row, column);
@@ -45,19 +45,19 @@ class SharedRim {
         return source_[k] != k;
     }
 
-    // Sample (row, column) on the rim, both even.
+    // Returns whether a run ends at rim sample (row, column); both are even.
     bool is_run_end(uint32_t row, uint32_t column) const {
         return source_ && source_[ring_index(side_, row, column)] == kRunEnd;
     }
 
-    // Of a place on the rim.
+    // The source of a place on the rim.
     DetailPlace source_of(Orientation orientation, uint32_t row, uint32_t column) const {
         const GridPoint p = sample_of(orientation, row, column);
         const GridPoint from = ring_point(side_, source_[ring_index(side_, p.row, p.column)]);
         return {from.row % 2 == 0 ? Orientation::kHorizontal : Orientation::kVertical, from.row / 2, from.column / 2};
     }
 
-    // f(orientation, row, column) for each copy.
+    // Calls f(orientation, row, column) for each copy.
     template <class F>
     void for_each_copy(const F& f) const {
         if (!source_) return;
@@ -78,7 +78,7 @@ class SharedRim {
     uint32_t side_ = 0;
 };
 
-// What lifting keeps of one row of an image: cut-nodes on the rim are ends of runs of their own. Of rows inside: their ends.
+// What lifting keeps of an image row. On the rim, cut-nodes end runs of their own. Inner rows keep only their ends.
 struct KeepsOfRow {
     static constexpr bool kInner = true;
     const SharedRim& rim;
@@ -90,13 +90,13 @@ struct KeepsOfRow {
     }
 };
 
-// Values [begin, end) of a row between two rows, as columns are lifted, that are not kept. Neither the first nor the last row.
+// When columns are lifted: the values [begin, end) of an inner row that are lifted, not kept.
 inline LiftedRange lifted_part(const SharedRim& rim, uint32_t row, size_t width) {
     return {rim.is_run_end(row, 0) ? 3u : 0u,
             rim.is_run_end(row, static_cast<uint32_t>(width / 3 - 1)) ? width - 3 : width};
 }
 
-// An odd step on such a row.
+// An odd step of columns on such a row.
 template <class Wavelet, Direction D>
 inline void lift_low_row(int step, typename Wavelet::Sample* low, const typename Wavelet::Sample* before,
                          const typename Wavelet::Sample* behind, size_t width, const SharedRim& rim, uint32_t row) {
@@ -106,7 +106,7 @@ inline void lift_low_row(int step, typename Wavelet::Sample* low, const typename
     lift_end<Wavelet, D>(step, low + end, width - end);
 }
 
-// Sources with memory of their own. seams: may be null.
+// A SharedRim that owns its memory. seams: may be nullptr.
 class OwnSharedRim {
   public:
     OwnSharedRim(const SeamTable* seams, uint32_t side) : side_(side) {

@@ -1,7 +1,7 @@
 // The ring of a square image: its 4*(side-1) boundary samples in the order that format/sideband.h defines.
 //
-// Orientation: with rows down and columns to the right the ring runs counter-clockwise seen from outside the surface,
-// that is, (d position / d column) x (d position / d row) points outwards.
+// With rows down and columns to the right, the ring runs counter-clockwise seen from outside the surface:
+// (d position / d column) x (d position / d row) points outwards.
 #pragma once
 
 #include <cstdint>

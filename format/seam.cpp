@@ -6,8 +6,8 @@
 namespace gim {
 namespace {
 
-// One ring sample at some level, as a value that is equal exactly for glued samples: a node's class, or the pair
-// (first of the two mates, offset along it).
+// Identifies a ring sample at some level by a value that is equal exactly for glued samples: a node's class, or the
+// pair (first of the two mates, offset along it).
 uint64_t glued_identity(const SeamTable& table, uint32_t scale, uint32_t k) {
     const uint32_t start = table.first[0] * scale;
     const uint32_t position = k >= start ? k : k + table.first[table.path_count] * scale - start;
@@ -32,8 +32,8 @@ uint16_t find_root(std::array<uint16_t, kMaxCutPaths>& parent, uint16_t i) {
     return i;
 }
 
-// At the level where node-grid steps are single ring edges, are there two paths of one edge between the same two
-// classes?
+// Returns whether two paths of one edge join the same two classes, at the level where node-grid steps are single ring
+// edges.
 bool has_double_unit_path(const SeamTable& table) {
     std::array<uint32_t, kMaxCutPaths> keys;
     uint32_t count = 0;
@@ -121,8 +121,8 @@ bool level_is_closed(const SeamTable& table, uint32_t side) {
     }
     if (scale == 1 && has_double_unit_path(table)) return false;
 
-    // Edges from the rim to an interior sample that are always there: the ring samples beside a corner and the corner
-    // itself all lead to the one interior sample near it; at side 3 the whole ring leads to the centre.
+    // Some edges from the rim to an interior sample are always there. A corner and the ring samples beside it lead to
+    // the one interior sample near it. At side 3 the whole ring leads to the centre.
     if (side == 3) {
         std::array<uint64_t, 8> all;
         for (uint32_t k = 0; k < 8; ++k) all[k] = identity(k);
@@ -133,8 +133,8 @@ bool level_is_closed(const SeamTable& table, uint32_t side) {
         if (identity((corner + ring - 1) % ring) == identity(corner + 1)) return false;
     }
 
-    // Every rim cell has a diagonal that doubles no edge. Away from the corners both can be refused only where ring
-    // edges k-1, k and k+1 are whole paths (then scale is 1); near the corners each cell is looked at.
+    // Every rim cell needs a diagonal that doubles no edge. Away from the corners both double one only if ring edges
+    // k-1, k and k+1 are whole paths (then scale is 1). Near the corners each cell is checked.
     const auto cell_is_fine = [&](uint32_t k) {
         const GridPoint cell = cell_at_edge(side, k);
         return rim_split(side, cell.row, cell.column, identity) != Split::kNever;

@@ -37,35 +37,35 @@ struct SeamTable {
     uint32_t length(uint32_t path) const { return first[path + 1] - first[path]; }
 };
 
-// No paths: an open square, whatever the other arguments. kMalformed unless node_side is 2^j+1, the lengths fill the
-// ring, mates are mutual, distinct and equally long.
+// Checks a sideband and fills the table. Without paths the square is open, whatever the other arguments. Returns
+// kMalformed unless node_side is 2^j+1, the lengths fill the ring, and mates are mutual, distinct and equally long.
 Status build_seam_table(uint32_t node_side, uint32_t start, std::span<const CutPath> paths, SeamTable* table);
 inline Status build_seam_table(const Sideband& sideband, SeamTable* table) {
     return build_seam_table(sideband.node_side, sideband.start, sideband.paths, table);
 }
 
-// True when the samples of that side (2^j+1), glued along the seams and split as rim_split says, are an indexed
-// oriented 2-manifold whatever the positions: no two corners of a triangle are one vertex, no two edges have the same
-// two vertices. O(paths log paths).
+// Returns whether the samples of that side (2^j+1), glued along the seams and split as rim_split says, are an indexed
+// oriented 2-manifold whatever the positions: no triangle has a vertex twice, no two edges have the same two vertices.
+// O(paths log paths).
 bool level_is_closed(const SeamTable& table, uint32_t side);
 
-// The number of distinct surface points on the ring at that side. The side must be closed. O(paths).
+// The number of distinct surface points on the ring at that side, where the level must be closed. O(paths).
 uint32_t ring_class_count(const SeamTable& table, uint32_t side);
 
-// class_of[k] for every ring sample k: equal for samples that are one surface point; numbered 0, 1, .. by first
+// Fills class_of[k] for every ring sample k. Samples of one surface point have equal numbers: 0, 1, .. by first
 // appearance along the ring. class_of.size() == ring_length(side); (side-1) must be a multiple of (node_side-1).
 // O(side).
 void ring_classes(const SeamTable& table, uint32_t side, std::span<uint32_t> class_of);
 
-// The rule for a cell that touches the rim. ClassAt: ring index -> anything comparable that tells classes apart.
+// The split of a cell that touches the rim. class_at(ring index) returns anything comparable that tells classes apart.
 template <class ClassAt>
 Split rim_split(uint32_t side, uint32_t row, uint32_t column, const ClassAt& class_at);
 
 // ---- implementation of the template ----
 
-// Would the diagonal from rim sample b to interior sample p double another edge? It may when another of p's eight
-// neighbours is the same surface point as b. Those on the rim are a run of the ring: three samples, or five around a corner
-// of the square, whose side is 5 or more.
+// Returns whether the diagonal from rim sample b to interior sample p may double another edge. It may if another of p's
+// eight neighbours is the same surface point as b. Those on the rim are a run of the ring: three samples, or five
+// around a corner of the square. The side is 5 or more.
 template <class ClassAt>
 bool diagonal_may_double(uint32_t side, GridPoint b, GridPoint p, const ClassAt& class_at) {
     const uint32_t ring = ring_length(side), of_b = ring_index(side, b.row, b.column);
@@ -86,7 +86,7 @@ Split rim_split(uint32_t side, uint32_t row, uint32_t column, const ClassAt& cla
     const uint32_t last_cell = side - 2;
     const bool row_end = row == 0 || row == last_cell;
     const bool column_end = column == 0 || column == last_cell;
-    // Through the corner of the square: the other diagonal would join two rim samples.
+    // The split goes through the corner of the square: the other diagonal would join two rim samples.
     if (row_end && column_end) return (row == 0) == (column == 0) ? Split::kMain : Split::kAnti;
     if (!row_end && !column_end) return Split::kShorter;
 

@@ -1,6 +1,6 @@
 // The sideband as bits, both ways.  spec/gim-format.md, "SEAM chunk".
-// About ten bytes for a surface of genus 0: a path is new, or the mate of a path that is still open - most often of the
-// one opened last - and a new path's length is at most half of the ring that is not spoken for.
+// A surface of genus 0 takes about ten bytes. A path is new, or it is the mate of an open path, most often of the one
+// opened last. A new path that will have a mate fills at most half of the free part of the ring.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace gim {
 
-// Appends the code of one image's sideband. It must satisfy build_seam_table; the node grid is stored as it is.
+// Appends the code of one image's sideband, which must satisfy build_seam_table. Keeps the node grid as it is.
 void append_sideband(const Sideband& sideband, std::vector<uint8_t>* bytes);
 
 // What parse_sideband found; the paths are in the caller's array.
@@ -23,11 +23,11 @@ struct ParsedSideband {
     size_t size = 0;  // bytes read
 };
 
-// Reads one image's sideband from the front of `bytes`. kMalformed at the end of the bytes, when there are more paths
-// than `paths` holds, and for padding that is not zero.
+// Reads one image's sideband from the front of `bytes`. Returns kMalformed if the bytes end too early, if `paths`
+// cannot hold all paths, or if padding is not zero.
 Status parse_sideband(std::span<const uint8_t> bytes, std::span<CutPath> paths, ParsedSideband* parsed);
 
-// The same sideband on the coarsest node grid that has all its nodes.
+// Returns the same sideband on the coarsest node grid that has all its nodes.
 Sideband with_coarsest_node_grid(Sideband sideband);
 
 }  // namespace gim

@@ -5,7 +5,7 @@
 
 namespace gim {
 
-// Of the cell with first sample (row, column).
+// For the cell whose first sample is (row, column).
 enum class Split : uint8_t {
     kShorter,  // along the shorter diagonal; kMain when both are equally long
     kMain,     // (row, column) - (row+1, column+1)

@@ -11,7 +11,7 @@ enum class [[nodiscard]] Status : int32_t{
     kOk = 0,
     kNotGim = 1,              // the magic number is missing
     kUnsupportedVersion = 2,  // a newer format version, or an unknown critical chunk
-    kMalformed = 3,           // bytes that no writer produces
+    kMalformed = 3,           // bytes that no encoder writes
     kLimitExceeded = 4,       // valid, but larger than the caller's limits
     kBadArgument = 5,         // the caller's mistake
     kScratchTooSmall = 6,     // scratch or output memory is smaller than the size functions say

@@ -1,5 +1,5 @@
-// What the coefficient coder starts from: weights of the expected magnitude, fitted, and states of its models, trained on
-// development models with tools/train.  spec/gim-format.md, "Values" and "Trained states", prints the same numbers.
+// Where the coefficient coder starts: fitted weights of the expected magnitude, and model states that tools/train has
+// learnt from development models.  spec/gim-format.md, "Values" and "Trained states", prints the same numbers.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@ namespace gim {
 enum class CoefficientKind : uint8_t {
     kPlain,     // x, y, z: lossless positions
     kInFrames,  // a normal component and two tangential ones: lossy positions
-    kPlanes,    // of attribute planes
+    kPlanes,    // attribute planes
 };
 
-// What a magnitude nearby adds to the expected one, in 1/256 of it.
+// What each magnitude nearby adds to the expected one, in 1/256 of it.
 struct BandWeights {
     uint32_t left, above, corners;   // in the same band; corners: above left and above right
     uint32_t parent, beside_parent;  // beside_parent: its four neighbours
@@ -25,16 +25,16 @@ struct BandWeights {
     uint32_t constant;
 };
 
-// Images narrower than this have coarse bands.
+// Bands of images narrower than this have the coarse weights.
 inline constexpr uint32_t kFineSide = 32;
 
-// Of the first and of a later component.
+// For the first component and for later ones.
 inline constexpr BandWeights kBaseWeights[2] = {
     {80, 48, 0, 0, 0, 0, 0, 0, 0, 0, 131072},
     {80, 48, 0, 0, 0, 0, 0, 0, 96, 48, 131072},
 };
 
-// By kind; coarse or fine; horizontal, vertical or diagonal; of the first and of a later component.
+// By kind; coarse or fine; horizontal, vertical or diagonal; first or later component.
 inline constexpr BandWeights kBandWeights[3][2][3][2] = {
     {
         {

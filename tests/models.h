@@ -1,4 +1,4 @@
-// The development models (GIM_MODELS_DIR), for tests that are skipped, visibly, where the folder is missing.
+// The development models (GIM_MODELS_DIR). If the folder is missing, tests that need it are visibly skipped.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace gim {
 
-// Reads the positions and triangles of a binary little-endian PLY as the models are written: scalars in the vertex
-// element, lists with a uchar count in the face element. Nothing when there is no such file.
+// Reads the positions and triangles of a binary little-endian PLY as the models have it: scalars in the vertex element,
+// lists with a uchar count in the face element. Returns nothing if there is no such file.
 inline std::optional<TriangleMesh> read_model(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return std::nullopt;

@@ -9,8 +9,8 @@
 namespace gim {
 namespace {
 
-// Where charts lie in a level's grid. At full resolution in the rectangle; coarser ones, which would run into each other
-// there, in shelves, an empty row and column between them.
+// Places charts in a level's grid. At full resolution they lie as in the rectangle. Coarser ones would run into each
+// other there: they stand in shelves, with an empty row and column between them.
 class GridLayout {
   public:
     GridLayout(const Header& header, const ChartLevelShape& shape, uint64_t padded_samples)
@@ -44,7 +44,7 @@ class GridLayout {
     uint32_t column_ = 0, row_ = 0;
 };
 
-// Calls f(chart, number) for every chart of the table; its size, but not its place, is filled in.
+// Calls f(chart, number) for every chart of the table. Fills in its size, but not its place.
 template <class F>
 Status for_each_chart(std::span<const uint8_t> payload, const Header& header, const ContainerLimits& limits,
                       uint32_t level, uint32_t* mates, ChartTableReader* reader, const F& f) {
@@ -67,7 +67,7 @@ Status for_each_chart(std::span<const uint8_t> payload, const Header& header, co
     return reader->finish();
 }
 
-// The planes of one chart, cut out of those of all.
+// The bands and images of one chart, cut out of those of all.
 PyramidWorkspace planes_of(const ChartWorkspace& ws, size_t first, size_t low_first) {
     PyramidWorkspace planes = ws.pyramid;
     planes.bands[0] += first * 3;
@@ -77,7 +77,7 @@ PyramidWorkspace planes_of(const ChartWorkspace& ws, size_t first, size_t low_fi
     return planes;
 }
 
-// The steps of a chart that one stream holds, from its base or from the level before.
+// Decodes the steps of a chart that one stream holds, from its base or from the level before.
 template <class Wavelet>
 bool decode_chart(const Header& header, const ChartLevelShape& shape, const DecodedChart& chart,
                   const PyramidWorkspace& planes, RangeDecoder& decoder, uint32_t stream_level) {
@@ -153,7 +153,7 @@ Status open_charts(const Header& header, std::span<const uint8_t> file, const Co
     }
     shape->columns = layout.columns();
     shape->rows = layout.rows();
-    // Long boxes this way and that make shelves of mostly nothing.
+    // Wide boxes beside tall ones make shelves that are mostly empty.
     return uint64_t{shape->columns} * shape->rows > limits.max_samples ? Status::kLimitExceeded : Status::kOk;
 }
 

@@ -1,7 +1,7 @@
-// One level of a multi-chart image: borders and streams -> samples of every chart -> zippered.
+// One level of a multi-chart image: borders and streams -> samples of every chart -> zippered charts.
 // spec/gim-format.md, "Charts".
-// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5. Each point of a seam
-// becomes the mean of its samples, and the correction fades out into the charts, as lossy coding moves both sides.
+// After: Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 4.5. Lossy coding moves
+// both sides of a seam: each point becomes the mean of its samples, and the correction fades out into the charts.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace gim {
 struct ChartLevelShape {
     uint32_t level = 0;
     uint32_t chart_count = 0, path_count = 0;
-    uint64_t samples = 0, low_samples = 0;  // of all boxes at this level, and halved once more
-    uint32_t widest = 0;                    // columns of a box at this level
+    uint64_t samples = 0, low_samples = 0;  // of all boxes at this level, and at the next coarser one
+    uint32_t widest = 0;                    // columns of the widest box at this level
     uint32_t columns = 0, rows = 0;         // of the level's grid, in which the charts lie
     LevelSize size;
 };
@@ -38,7 +38,7 @@ inline constexpr uint8_t kOnBorder = 0, kInside = 254, kUndefined = 255;
 
 // Arrays of a level in the caller's scratch.
 struct ChartWorkspace {
-    PyramidWorkspace pyramid;  // whose planes hold all charts', one after the other
+    PyramidWorkspace pyramid;  // bands and images hold those of all charts, one after the other
     DecodedChart* charts = nullptr;
     BorderPath* paths = nullptr;
     uint32_t* mates = nullptr;
@@ -59,7 +59,7 @@ Status open_charts(const Header& header, std::span<const uint8_t> file, const Co
 
 ChartWorkspace lay_out_charts(const ChartLevelShape& shape, Arena* arena);
 
-// Decodes and zips. `samples` receives flat triples in units.
+// Decodes and zips. *samples receives flat triples in units.
 Status decode_charts(const Header& header, std::span<const uint8_t> file, const ContainerLimits& limits,
                      const ChartLevelShape& shape, const ChartWorkspace& ws, const float** samples);
 

@@ -1,15 +1,14 @@
 // The glued surface of one level of a multi-chart image.  spec/gim-format.md, "Charts".
-// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 3 (reconstruction): three defined
-// samples of a cell make a triangle, four make two. We leave out triangles that zippering has made degenerate, and take
-// normals from the triangles, as charts are too ragged for differences along rows and columns.
+// Sander, Wood, Gortler, Snyder, Hoppe. Multi-Chart Geometry Images. SGP 2003. Section 3 (reconstruction): three
+// defined samples of a cell make a triangle, four make two. We leave out triangles that zippering made degenerate.
+// Normals come from triangles: charts are too ragged for differences along rows and columns.
 #pragma once
 
 #include "decoder/charts/chart_decoder.h"
 
 namespace gim {
 
-// Calls f(vertex, chart, column, row, sample) for every vertex with its first sample; all but the first two are those of
-// the sample, `sample` its flat index.
+// Calls f(vertex, chart, column, row, sample) for every vertex, with the place and the flat index of its first sample.
 template <class F>
 void for_each_chart_vertex(const ChartLevelShape& shape, const ChartWorkspace& ws, const F& f) {
     uint32_t next = 0;
@@ -23,12 +22,12 @@ void for_each_chart_vertex(const ChartLevelShape& shape, const ChartWorkspace& w
     }
 }
 
-// Triangles as flat sample indices, `capacity` at most. False if there are more or fewer than that.
+// Writes triangles as flat sample indices. Returns false unless there are exactly `capacity`; never writes more.
 bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
                         uint32_t* triangles, uint32_t capacity);
 
-// Unit normals of the vertices: the sum over the triangles around them, weighted by area; zero where that is zero.
-// triangles: as flat samples.
+// Computes unit normals of the vertices: the area-weighted sum over the triangles around them, or zero if that is zero.
+// triangles: flat sample indices.
 void chart_normals(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
                    const uint32_t* triangles, float* normals);
 

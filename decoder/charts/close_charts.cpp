@@ -8,8 +8,8 @@
 namespace gim {
 namespace {
 
-// Spreads the corrections inwards, layer by layer. Each sample gets a part of the mean of those around it that lie one step
-// nearer to the border.
+// Spreads the corrections inwards, layer by layer. Each sample gets a part of the mean over its neighbours that lie one
+// step nearer to the border.
 void diffuse(const DecodedChart& chart, const ChartWorkspace& ws, float* samples) {
     const uint32_t width = chart_diffusion_width(chart.columns, chart.rows);
     uint8_t* depth = ws.depth + chart.first;
@@ -18,7 +18,7 @@ void diffuse(const DecodedChart& chart, const ChartWorkspace& ws, float* samples
     uint32_t* queue = ws.queue;
     uint32_t begin = 0, end = 0;
     for (uint32_t k = 0; k < chart.border.border_length; ++k) queue[end++] = chart.border.samples[k];
-    // A sample inside has all its eight neighbours in the box.
+    // All eight neighbours of an inner sample are in the box.
     const auto stride = static_cast<int32_t>(chart.columns);
     const std::array<int32_t, 8> around = {-stride - 1, -stride, -stride + 1, -1, 1, stride - 1, stride, stride + 1};
     const auto neighbour = [](uint32_t i, int32_t offset) { return i + static_cast<uint32_t>(offset); };

@@ -14,7 +14,7 @@ struct Surface {
     ChartLevelShape shape;
     ChartWorkspace ws;
     uint32_t* triangles = nullptr;    // flat samples
-    float* vertex_normals = nullptr;  // room for them
+    float* vertex_normals = nullptr;  // scratch, one triple per vertex
     const float* samples = nullptr;   // units
 
     void lay_out(Arena* arena) {
@@ -32,17 +32,17 @@ uint64_t scratch_size(const ChartLevelShape& shape) {
     return arena.used();
 }
 
-// Of a sample of the full resolution's box, in the rectangle.
+// Sets the texture coordinates, in the rectangle, of a sample of the box at full resolution.
 void set_texcoords(const Header& header, const ChartBox& box, uint32_t column, uint32_t row, float* uv) {
     uv[0] = static_cast<float>(box.atlas_column + static_cast<int32_t>(column)) / static_cast<float>(header.width - 1);
     uv[1] = static_cast<float>(box.atlas_row + static_cast<int32_t>(row)) / static_cast<float>(header.height - 1);
 }
 
-// Boxes may lie partly outside of the rectangle, but nothing that is defined.
+// Boxes may lie partly outside of the grid, but defined samples may not.
 bool lie_in_grid(const ChartLevelShape& shape, const ChartWorkspace& ws) {
     for (uint32_t c = 0; c < shape.chart_count; ++c) {
         const DecodedChart& chart = ws.charts[c];
-        for (uint32_t k = 0; k < chart.border.border_length; ++k) {  // what is inside lies between
+        for (uint32_t k = 0; k < chart.border.border_length; ++k) {  // inner samples lie between these
             const uint32_t i = chart.border.samples[k];
             if (chart.grid_column + i % chart.columns >= shape.columns ||
                 chart.grid_row + i / chart.columns >= shape.rows)
@@ -131,7 +131,7 @@ Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, 
         chart_normals(shape, surface.ws, surface.samples, surface.triangles, surface.vertex_normals);
     }
     if (out.texcoords) std::fill_n(out.texcoords, count / 3 * 2, 0.0f);
-    uint32_t* place = surface.ws.queue;  // of each flat sample in the grid
+    uint32_t* place = surface.ws.queue;  // place in the grid of each flat sample
     for (uint32_t c = 0; c < shape.chart_count; ++c) {
         const DecodedChart& chart = surface.ws.charts[c];
         for (uint32_t i = 0; i < chart.columns * chart.rows; ++i) {

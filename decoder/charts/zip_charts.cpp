@@ -56,7 +56,7 @@ struct BorderReader {
         ws.point[std::max(a, b)] = std::min(a, b);
     }
 
-    // Finds the samples inside the border. False when the border meets itself.
+    // Finds the samples inside the border. Returns false if the border meets itself.
     bool mark(DecodedChart& chart) const {
         constexpr uint8_t kBorderBit = 1, kToggleBit = 2;
         uint8_t* depth = ws.depth + chart.first;

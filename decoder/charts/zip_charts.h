@@ -6,9 +6,9 @@
 
 namespace gim {
 
-// Reads the borders and zippers of stream_level. Where that is the level that is asked for, also fills ws.depth and
-// makes ws.point a forest over flat samples in which parents come before their children. False: no encoder writes such
-// borders.
+// Reads the borders and zippers of stream_level. If that is the requested level, also fills ws.depth and makes ws.point
+// a forest over flat samples in which parents come before their children. Returns false on borders that no encoder
+// writes.
 bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, RangeDecoder& decoder);
 
 // Turns the forest into vertex numbers, by first appearance. Returns how many there are.

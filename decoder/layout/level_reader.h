@@ -26,7 +26,7 @@ struct Memory {
     size_t size = 0;
 };
 
-// Whether scratch is there, aligned, and has `needed` bytes.
+// Checks that scratch is there, is aligned and has `needed` bytes.
 inline Status check_scratch(const Memory& scratch, uint64_t needed) {
     if (!scratch.bytes || reinterpret_cast<uintptr_t>(scratch.bytes) % 16 != 0) return Status::kBadArgument;
     return scratch.size < needed ? Status::kScratchTooSmall : Status::kOk;
@@ -40,7 +40,7 @@ struct SurfaceArrays {
     uint32_t* triangles = nullptr;
 };
 
-// Units to object space: `count` triples.
+// Turns `count` triples from units into object space.
 inline void to_object(const std::array<float, 3> origin, float step, const float* units, float* __restrict positions,
                       size_t count = 1) {
     for (size_t i = 0; i < count; ++i)
@@ -54,7 +54,7 @@ struct LevelReader {
     // class_of, path_count: as in gim_read_seams.
     Status (*seams)(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
-    // request.level: of the plane that `chunk` at `offset` holds.
+    // Opens a level of the plane that `chunk` at `offset` holds. request.level: of the plane.
     Status (*open_plane)(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
     PlaneWorkspace (*lay_out_plane)(const PlaneLevel& plane, Arena* arena);
     // Makes samples of one surface point equal.

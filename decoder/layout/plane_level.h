@@ -14,15 +14,15 @@ namespace gim {
 struct PlaneLevel {
     PlaneChunk chunk;
     PyramidShape shape;
-    SeamTable seams;  // of squares
+    SeamTable seams;  // squares only
     uint32_t width = 0, height = 0, coarsest = 0;
-    uint64_t prefix = 0;  // bytes of the file that the plane needs
+    uint64_t prefix = 0;  // bytes of the file, from its start, that the plane needs
 };
 
-// Memory that decoding a plane and making the two sides of its seams equal needs, laid out in the caller's scratch.
+// Memory to decode a plane and to make the two sides of its seams equal, in the caller's scratch.
 struct PlaneWorkspace {
     PyramidWorkspace pyramid;
-    uint32_t* class_of = nullptr;  // of squares, as the next
+    uint32_t* class_of = nullptr;  // squares only, like the next
     FuseWork fuse;
 };
 

@@ -1,4 +1,4 @@
-// Cuts the caller's scratch into arrays. Without memory it only counts, so that one function both sizes and lays out.
+// Cuts the caller's scratch into arrays. Without memory it only counts, so that one function sizes and lays out.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@ class Arena {
     // memory: nullptr to count.
     explicit Arena(void* memory) : memory_(static_cast<std::byte*>(memory)) {}
 
-    // Uninitialised; T is trivial. Contents are written before they are read.
+    // Returns an uninitialised array of a trivial T. Write its contents before you read them.
     template <class T>
     T* take(size_t count) {
         T* array = memory_ ? reinterpret_cast<T*>(memory_ + used_) : nullptr;
         used_ += (uint64_t{count} * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
         return array;
     }
-    uint64_t used() const { return used_; }  // may be more than a size_t can tell: nobody has that much, then
+    uint64_t used() const { return used_; }  // may be more than fits a size_t: then nobody has that much
 
   private:
     std::byte* memory_;

@@ -5,7 +5,7 @@ namespace gim {
 void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
     const uint32_t low_columns = low_count(columns), low_rows = low_count(rows);
     const size_t all = size_t{columns} * rows * 3, low = size_t{low_columns} * low_rows * 3;
-    // Less would do for bands, but a base is read into their place.
+    // Bands need less memory, but the base is decoded there, too.
     ws->bands[0] = arena->take<int32_t>(all);
     ws->bands[1] = arena->take<int32_t>(low);
     ws->images[0] = arena->take<float>(all);

@@ -17,7 +17,7 @@ namespace gim {
 
 // Memory for one pyramid, laid out in the caller's scratch.
 struct PyramidWorkspace {
-    BandModels* models = nullptr;  // to be made fresh before the first stream
+    BandModels* models = nullptr;  // to be constructed before the first stream
     BandWork band_work;
     int32_t* bands[2] = {};  // of the level being decoded and of its parent, in turn
     void* images[2] = {};    // int32_t or float triples, in turn; the requested level ends in images[0]
@@ -25,24 +25,24 @@ struct PyramidWorkspace {
     uint32_t* rim = nullptr;  // ring_length(side) numbers where a shape has seams
 };
 
-// columns, rows: of the level that is asked for. models and band_work are left out: charts of one image share them.
+// Takes bands and images. columns, rows: of the requested level. The rest is shared by the charts of an image.
 void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws);
-// The rest; columns: of the widest level.
+// Takes models, band_work and synthesis. columns: of the widest level.
 void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws);
 
 struct PyramidShape {
     uint32_t columns = 2, rows = 2;    // at full resolution
     uint32_t steps = 0;                // from the base to full resolution
-    uint32_t level = 0;                // asked for: that many steps are left out
+    uint32_t level = 0;                // the requested one: that many steps are left out
     DetailCoding details;              // 9/7 only
     int32_t middle = 0;                // what base samples are stored relative to
     bool chained_base = false;         // a base value is stored relative to the one before it
-    const SeamTable* seams = nullptr;  // of a square whose mates share their details
+    const SeamTable* seams = nullptr;  // only of a square whose mates share details
 };
 
-inline constexpr float kLargestUnit = 0x1p22f;  // writers stay well below; keeps all later arithmetic finite
+inline constexpr float kLargestUnit = 0x1p22f;  // encoders stay well below; keeps all later arithmetic finite
 
-// Places the three bands that lead to an image in one array.
+// Places the three bands of one image in one array.
 inline LevelBands bands_in(int32_t* memory, uint32_t columns, uint32_t rows) {
     LevelBands bands;
     bands.horizontal = {memory, low_count(rows), high_count(columns)};
@@ -51,17 +51,17 @@ inline LevelBands bands_in(int32_t* memory, uint32_t columns, uint32_t rows) {
     return bands;
 }
 
-// Decodes bands from the base up to the level that is asked for.
+// Decodes from the base up to the requested level.
 template <class Wavelet>
 class PyramidDecoder {
   public:
     using Sample = typename Wavelet::Sample;
 
-    // done: steps that an earlier decoder of the same shape has done in the same memory.
+    // done: steps that an earlier decoder of this shape has done in this memory.
     PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws, uint32_t done = 0)
         : shape_(shape), ws_(ws), done_(done), started_(done > 0) {}
 
-    // All that leads to a level (0: full resolution) from where the last call has come. False: no writer's values.
+    // Decodes up to a level (0: full resolution), from where the last call stopped. Returns false on invalid values.
     bool advance(BandCoder<RangeDecoder>& coder, uint32_t to_level) {
         if (!started_ && !decode_base(coder)) return false;
         started_ = true;
@@ -76,7 +76,7 @@ class PyramidDecoder {
     uint32_t columns_at(uint32_t step) const { return halved(shape_.columns, shape_.steps - step); }
     uint32_t rows_at(uint32_t step) const { return halved(shape_.rows, shape_.steps - step); }
 
-    // Images and bands alternate so that the last ones of the requested level fall on slot 0.
+    // Images and bands alternate between two slots. Those of the requested level are in slot 0.
     uint32_t slot(uint32_t step) const { return (shape_.steps - shape_.level - step) & 1; }
     Sample* image(uint32_t step) const { return static_cast<Sample*>(ws_.images[slot(step)]); }
 
@@ -124,10 +124,10 @@ class PyramidDecoder {
     PyramidShape shape_;
     const PyramidWorkspace& ws_;
     uint32_t done_;  // steps that are done
-    bool started_;   // the base is there
+    bool started_;   // the base is decoded
 };
 
-// One stream of an image that has streams of its own.
+// Decodes one stream of an image that has streams of its own.
 template <class Wavelet>
 Status decode_stream(PyramidDecoder<Wavelet>& decoder, const PyramidWorkspace& ws, std::span<const uint8_t> stream,
                      uint32_t to_level) {
@@ -136,7 +136,7 @@ Status decode_stream(PyramidDecoder<Wavelet>& decoder, const PyramidWorkspace& w
     return decoder.advance(band_coder, to_level) && coder.intact() ? Status::kOk : Status::kMalformed;
 }
 
-// Hardly ever is a value out of bounds, so that it pays to look first. What is not a number becomes the least.
+// Clamps values to +-kLargestUnit, and a NaN to the least. Values are hardly ever out of bounds, so it looks first.
 inline void bound_units(float* values, size_t count) {
     constexpr auto kLargest = std::bit_cast<int32_t>(kLargestUnit);
     int32_t beyond = 0;  // negative: some magnitude, read as an integer, is larger
@@ -148,7 +148,7 @@ inline void bound_units(float* values, size_t count) {
     }
 }
 
-// Integers or floats in place to bounded floats.
+// Turns integers or floats into bounded floats, in place.
 template <class Sample>
 float* to_units(void* memory, size_t count) {
     if constexpr (!std::is_same_v<Sample, float>) {

@@ -1,7 +1,7 @@
 // Binary range decoder and raw bits of one stream.  spec/gim-format.md, "Range coder".
-// The range coder reads from the front of the stream, raw bits are read from its end backwards. Parsing never fails on
-// the way; intact() tells at the end whether the two met. After: Martin. Range encoding. 1979; Subbotin's carryless
-// variant. Renormalises 32 bits at a time.
+// The range coder reads the stream from the front. Raw bits are read from the end backwards. Reading never fails; in
+// the end intact() tells whether raw bits ran out. After: Martin. Range encoding. 1979; Subbotin's carryless variant.
+// Renormalises 32 bits at a time.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,7 @@ class RangeDecoder {
         return bit;
     }
 
-    // count <= 25: up to 7 bits are left over, and a register holds 32.
+    // count <= 25, because up to 7 bits are left over and the register holds 32.
     uint32_t code_raw(uint32_t, uint32_t count) {
         while (raw_count_ < count) {
             uint8_t byte = 0;

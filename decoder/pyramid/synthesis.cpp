@@ -7,9 +7,9 @@
 namespace gim {
 namespace {
 
+// Synthesis undoes the steps from the last to the first. The last one changed the low samples.
 template <class Wavelet>
-constexpr int low_step(
-    int i) {  // synthesis undoes the steps from the last to the first; the last one changed the low samples
+constexpr int low_step(int i) {
     return Wavelet::kSteps - 1 - 2 * i;
 }
 
@@ -19,7 +19,7 @@ bool any_of(const int32_t* values, size_t count) {
     return all != 0;
 }
 
-// Rows of the three bands as Samples: integers as they are, or dequantized. load() returns false where all are zeros.
+// Loads rows of the three bands as Samples: integers as they are, or dequantized. load() returns false if all are zero.
 class IntegerDetails {
   public:
     IntegerDetails(const int32_t*, uint32_t, uint32_t, const LevelBands& bands, const DetailSteps&, const SharedRim&)
@@ -52,7 +52,7 @@ class LossyDetails {
   private:
     static constexpr uint32_t kLanes = 64, kBlock = 16;
 
-    // Most details are zero: those need no frame, and most blocks of them are skipped at once. Copies are zeros, too.
+    // Most details are zero. They need no frame, and most blocks of them are skipped. Copies are stored as zeros.
     bool load_framed_row(Orientation orientation, uint32_t row, const Band& band, float* out) {
         std::fill_n(out, size_t{band.columns} * 3, 0.0f);
         const int32_t* values = band.row(row);
@@ -85,7 +85,7 @@ class LossyDetails {
         return any;
     }
 
-    // Values and tangents of the details in some columns of a row, for lane `first` and the next ones.
+    // Takes values and tangents of the details in some columns of a row into lanes from `first` on.
     void gather(Orientation orientation, uint32_t row, const uint32_t* columns, uint32_t count, uint32_t first) {
         frames_.find_tangents(orientation, row, columns, count, lanes_, first);
         const int32_t* values = bands_.of(orientation).row(row);
@@ -93,10 +93,10 @@ class LossyDetails {
             for (uint32_t k = 0; k < 3; ++k) values_[k][first + i] = values[3 * size_t{columns[i]} + k];
     }
 
-    // What has been gathered into its columns of a row. Copies have the steps of their sources.
+    // Writes the gathered details into their columns of a row. Copies have the steps of their sources.
     void write_gathered(Orientation orientation, float* out) {
         if (count_ == 0) return;
-        // A few more, left from before, are cheaper than the rest of a loop.
+        // A few stale lanes more are cheaper than the remainder of a loop.
         const uint32_t rounded = (count_ + 3) / 4 * 4;
         frames_.make_frames(lanes_, rounded);
         const float tangential = tangential_step(steps_, orientation);
@@ -111,7 +111,7 @@ class LossyDetails {
         count_ = 0;
     }
 
-    // f(column) for each copy in a row of that band.
+    // Calls f(column) for each copy in a row of that band.
     template <class F>
     void for_each_copy(Orientation orientation, uint32_t row, const Band& band, const F& f) {
         if (!rim_ || orientation == Orientation::kDiagonal) return;
@@ -147,10 +147,10 @@ void load_low(const float* low, size_t count, float* row) {
     for (size_t i = 0; i < count; ++i) row[i] = low[i] * Irreversible97::kLowGain;
 }
 
-// Low and high triples in turn.
+// Writes low and high triples in turn.
 template <class Sample>
 void interleave(size_t lows, size_t highs, const Sample* low, const Sample* high, Sample* __restrict row) {
-    // Four numbers at a time: the next triple covers the fourth. Not at the end, where there may be no next one.
+    // Copies four numbers at a time: the next triple covers the fourth. The last pair may have no next triple.
     for (size_t i = 0; i + 1 < highs; ++i) {
         std::memcpy(row + 6 * i, low + 3 * i, 4 * sizeof(Sample));
         std::memcpy(row + 6 * i + 3, high + 3 * i, 4 * sizeof(Sample));
@@ -160,13 +160,13 @@ void interleave(size_t lows, size_t highs, const Sample* low, const Sample* high
     if (lows > highs) std::copy_n(low + 3 * highs, 3, row + 6 * highs);
 }
 
-// A row given as low and high triples, as many low ones as high ones or one more. Both have room for a triple behind, high
+// A row as low and high triples: as many low ones as high ones, or one more. Both have room for a triple behind, `high`
 // also before.
 template <class Sample>
 struct SplitRow {
     size_t lows, highs;
     Sample *low, *high;
-    bool any_high = true;  // false: the high ones are all zeros
+    bool any_high = true;  // false if the high ones are all zero
 };
 
 // Undoes the horizontal steps and writes the row.
@@ -174,7 +174,7 @@ template <class Wavelet, class Keeps>
 void synthesize_row(const SplitRow<typename Wavelet::Sample>& from, typename Wavelet::Sample* row, const Keeps& keeps) {
     const auto [lows, highs, low, high, any_high] = from;
     for (int i = 0; i < Wavelet::kSteps / 2; ++i) {
-        // Zeros change nothing in the first step, whose factor is positive: x - 0 is x, -0 too.
+        // Zeros change nothing in the first step: its factor is positive, and x - 0 is x, also for -0.
         if (i > 0 || any_high)
             lift_lows<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i), lows, highs, low, high, keeps);
         std::copy_n(low + 3 * (lows - 1), 3, low + 3 * lows);
@@ -183,7 +183,7 @@ void synthesize_row(const SplitRow<typename Wavelet::Sample>& from, typename Wav
     interleave(lows, highs, low, high, row);
 }
 
-// Wavelet and what is kept are the rim's.
+// Picks the wavelet by type, and what is kept by the rim.
 template <class Sample>
 void synthesize_row_of(const SharedRim& rim, uint32_t row, uint32_t rows, const SplitRow<Sample>& from, Sample* out) {
     if constexpr (std::is_same_v<Sample, Reversible53::Sample>) {
@@ -197,7 +197,7 @@ void synthesize_row_of(const SharedRim& rim, uint32_t row, uint32_t rows, const 
     }
 }
 
-// Vertical steps, each as early as its rows are ready so that they are still in the cache.
+// Undoes the vertical steps. Each runs as soon as its rows are ready, while they are still in the cache.
 template <class Wavelet>
 class VerticalSynthesis {
   public:
@@ -211,7 +211,7 @@ class VerticalSynthesis {
           highs_(high_count(rows)),
           lifted_(lifted_lows(low_count(rows), static_cast<bool>(rim))) {}
 
-    // Rows up to 2i+1 (i < highs) or all rows (i == highs) are there.
+    // Goes on, now that rows up to 2i+1 (i < highs) or all rows (i == highs) are there.
     void advance(ptrdiff_t i) {
         step(0, i);
         if (i == highs_) {
@@ -220,7 +220,7 @@ class VerticalSynthesis {
     }
 
   private:
-    // Pair k of steps, ready for low row i of its first step: pair k runs k rows behind pair 0.
+    // Runs pair k of steps on low row i. Pair k runs k rows behind pair 0.
     void step(int k, ptrdiff_t i) {
         if (i < 0) return;
         const int s = low_step<Wavelet>(k);
@@ -232,7 +232,7 @@ class VerticalSynthesis {
         }
         if (k + 1 < Wavelet::kSteps / 2) step(k + 1, i - 1);
     }
-    // Both at once, low row i and high row i-1, where all rows differ.
+    // Lifts low row i and high row i-1 at once; all the rows differ.
     void lift_low_and_high(int s, ptrdiff_t i) {
         Sample *target = low(i), *high_target = high(i - 1);
         const Sample *before = low(i - 1), *behind = high(i);

@@ -14,8 +14,8 @@ namespace gim {
 // Numbers (of Sample's size) that synthesize needs as work space.
 constexpr size_t synthesis_work_size(uint32_t columns) { return (size_t{columns} + 4) * 3; }
 
-// columns, rows: of the image, 2 or more. low: low_count(rows) x low_count(columns) triples. image: rows x columns triples,
-// may not overlap the inputs. steps, rim: of the 9/7; the reversible wavelet has none.
+// columns, rows: of the image, at least 2. low: low_count(rows) x low_count(columns) triples. image: rows x columns
+// triples, apart from all inputs. steps, rim: only for the 9/7.
 template <class Wavelet>
 void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
                 const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image,

@@ -16,7 +16,7 @@ inline void cross(const float* u, const float* v, float* n) {
     n[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-// Unit length, or zero.
+// Scales n to unit length. Zero stays zero.
 inline void normalize(float* n) {
     const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int k = 0; k < 3; ++k) n[k] = length > 0.0f ? n[k] / length : 0.0f;

@@ -16,7 +16,7 @@ struct Level {
     ImageWorkspace ws;
 };
 
-// level->coarsest is only sought up to `most`, which is at least request.level.
+// Looks for level->coarsest up to `most` only, which is at least request.level.
 Status open_level(const LevelRequest& request, uint32_t most, Level* level) {
     const Header& header = request.header;
     if (Status s = read_seams(header, request.file, request.image, &level->seams); s != Status::kOk) return s;
@@ -46,7 +46,7 @@ Status decode(const LevelRequest& request, const Memory& scratch, Level* level) 
                         &level->samples);
 }
 
-// The vertices of the closed mesh with their first samples, in runs along a row: f(vertex, sample, count).
+// Calls f(vertex, sample, count) for all vertices of the closed mesh with their first samples, in runs along a row.
 template <class F>
 void for_each_run(const Level& level, const F& f) {
     const uint32_t side = level.side;
@@ -57,7 +57,7 @@ void for_each_run(const Level& level, const F& f) {
     for (uint32_t r = 1; r + 1 < side; ++r, next += side - 2) f(next, GridPoint{r, 1}, side - 2);
 }
 
-// Of `count` samples along a row.
+// Sets the texture coordinates of `count` samples along a row.
 void set_texcoords(uint32_t side, GridPoint p, uint32_t count, float* texcoords) {
     const float last = static_cast<float>(side - 1);
     for (uint32_t i = 0; i < count; ++i) {
@@ -137,7 +137,7 @@ Status read_square_seams(const LevelRequest& request, uint32_t* class_of, uint32
 Status open_square_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
     if (Status s = read_seams(request.header, request.file, request.image, &plane->seams); s != Status::kOk) return s;
     if (Status s = read_plane_chunk(request, chunk, offset, plane); s != Status::kOk) return s;
-    // The ring's classes exist on grids at least as fine as the seams' own.
+    // The ring's classes exist only on grids at least as fine as the node grid.
     const uint32_t side = plane->chunk.side(request.image), least = std::max(3u, plane->seams.node_side);
     if (side < least) return Status::kMalformed;
     while (((side - 1) >> (plane->coarsest + 1)) + 1 >= least) ++plane->coarsest;

@@ -8,7 +8,7 @@
 namespace gim {
 namespace {
 
-// The part of a level chunk that belongs to one image.
+// Finds the part of a level chunk that belongs to one image.
 Status image_stream(const Header& header, std::span<const uint8_t> payload, uint32_t image, uint32_t level,
                     std::span<const uint8_t>* stream) {
     if (header.image_count() == 1) {
@@ -61,7 +61,7 @@ PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     lay_out_coder(side, arena, &ws.pyramid);
     lay_out_planes(side, side, arena, &ws.pyramid);
     ws.class_of = arena->take<uint32_t>(ring);
-    ws.pyramid.rim = ws.class_of;  // done with before classes are made
+    ws.pyramid.rim = ws.class_of;  // no longer needed when classes are made
     ws.fuse.sums = arena->take<float>(ring * 3);
     ws.fuse.first = arena->take<uint32_t>(ring);
     ws.fuse.members = arena->take<uint32_t>(ring);
@@ -73,7 +73,6 @@ PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
 ImageWorkspace lay_out(uint32_t side, Arena* arena) {
     ImageWorkspace ws{lay_out_plane(side, arena)};
     ws.triangulate = {arena->take<float>(size_t{side} * 6), arena->take<uint32_t>(side - 1)};
-    // The bands are done with when normals are computed, but hold a little less.
     ws.normals = arena->take<float>(size_t{side} * side * 3);
     return ws;
 }

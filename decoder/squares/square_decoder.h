@@ -27,15 +27,15 @@ inline PyramidShape square_shape(uint32_t exponent, uint32_t level, const Detail
     return {side, side, exponent, level, details, middle, false, seams};
 }
 
-// side: of the level that is asked for.
+// side: of the requested level.
 PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena);
 ImageWorkspace lay_out(uint32_t side, Arena* arena);
 
-// Decodes the samples of a level, fused, into ws.pyramid.images[0] as floats in units; fills ws.class_of.
+// Decodes and fuses the samples of a level: floats in units in ws.pyramid.images[0]. Fills ws.class_of.
 Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                     const SeamTable& seams, const ImageWorkspace& ws, float** samples);
 
-// The sideband of one image, checked. kMalformed also when its finest level is not closed.
+// Reads and checks the sideband of one image. Returns kMalformed also if the finest level is not closed.
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams);
 
 }  // namespace gim

@@ -8,7 +8,7 @@
 namespace gim {
 namespace {
 
-// a b   a: first sample of the cell; rows go down, columns to the right; seen from outside the row axis points up, so
+// a b   a is the first sample of the cell; rows go down, columns to the right. From outside the row axis points up, so
 // c d   that a, b, d is counter-clockwise (format/ring.h).
 void write_cell(uint32_t a, uint32_t b, uint32_t c, uint32_t d, bool main, uint32_t* out) {
     out[0] = a;
@@ -33,7 +33,7 @@ void write_inner_cells(uint32_t a, uint32_t c, const uint32_t* is_main, uint32_t
     }
 }
 
-// x, y and z of a row of samples, each by itself, so that loops over the row can be vectorised.
+// Splits a row of samples into x, y and z, so that compilers vectorise loops over it.
 void split_row(const float* samples, size_t side, float* __restrict row) {
     for (size_t i = 0; i < side; ++i) {
         row[i] = samples[3 * i];
@@ -42,7 +42,7 @@ void split_row(const float* samples, size_t side, float* __restrict row) {
     }
 }
 
-// 1 for each cell between two split rows whose main diagonal is the shorter one, else 0.
+// Sets is_main to 1 for each cell between two split rows whose main diagonal is not longer than the other, else to 0.
 void find_shorter_main(const float* __restrict a, const float* __restrict c, size_t side,
                        uint32_t* __restrict is_main) {
     const auto squared = [](float x, float y, float z) { return x * x + y * y + z * z; };

@@ -23,13 +23,13 @@ struct TriangulateWork {
     uint32_t* is_main = nullptr;  // side - 1
 };
 
-// 2*(side-1)^2 triangles, counter-clockwise from outside, cell by cell. class_of decides the splits along the rim
-// whatever the numbering.
+// Writes 2*(side-1)^2 triangles, cell by cell, counter-clockwise from outside. class_of decides the splits along the
+// rim, whatever the numbering.
 void triangulate(const float* samples, uint32_t side, const uint32_t* class_of, const VertexNumbers& numbers,
                  const TriangulateWork& work, uint32_t* triangles);
 
-// Unit normals of all side*side samples: cross product of the central differences (one-sided on the rim), summed over
-// glued samples; zero where that is zero. sums: work space for 3*class_count numbers.
+// Computes unit normals of all side*side samples: cross products of the central differences (one-sided on the rim),
+// summed over glued samples; zero if the sum is. sums: work space for 3*class_count numbers.
 void sample_normals(const float* samples, uint32_t side, const uint32_t* class_of, uint32_t class_count, float* sums,
                     float* normals);
 

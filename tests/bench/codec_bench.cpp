@@ -1,5 +1,5 @@
 // Google Benchmark: inverse wavelet, entropy decoding, whole decode of a 257 x 257 image, one thread.
-//   codec_bench [--benchmark_filter=...]; GIM_BENCH_IMAGE=file: a headerless 257 x 257 float image instead of the built-in one
+// Run codec_bench. GIM_BENCH_IMAGE=file replaces the built-in image: 257 x 257 headerless floats.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t kSide = 257;
 
-// A bumpy ellipsoid folded out of the square; an even file size per sample as scans have.
+// A bumpy ellipsoid folded out of the square. It takes as many bytes a sample as scans do.
 std::vector<float> image_planes() {
     std::vector<float> planes(size_t{kSide} * kSide * 3);
     if (const char* name = std::getenv("GIM_BENCH_IMAGE")) {

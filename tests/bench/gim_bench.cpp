@@ -1,4 +1,4 @@
-// Google Benchmarks of the decoder and of the encoder's inner loops. Run: gim_bench; compare ratios within one run only.
+// Google Benchmarks of the decoder and of the encoder's inner loops. Compare ratios within one run of gim_bench only.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace gim {
 namespace {
 
-// A bumpy open square: work for every stage of the decoder.
+// A bumpy open square, which gives every stage of the decoder work.
 SquareImage bumpy_image(uint32_t side) {
     SquareGrid image{side, {}};
     for (uint32_t row = 0; row < side; ++row) {

@@ -1,4 +1,4 @@
-// The same from C++, with gim/decoder.hpp.
+// Does what main.c does, in C++ with gim/decoder.hpp.
 #include <gim/decoder.hpp>
 
 #include <cstdio>

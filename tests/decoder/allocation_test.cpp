@@ -1,4 +1,4 @@
-// The decoder never asks for memory. Its own program, because it counts every malloc of the process.
+// The decoder never asks for memory. A program of its own, because it counts every malloc of the process.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -58,7 +58,7 @@ TEST(Allocation, NoCallOfTheDecoderAllocates) {
         const size_t room = scratch.size();
         const uint64_t before = allocations;
 
-        // This counts at all.
+        // Shows that counting works.
         std::free(std::malloc(1));
         const uint64_t counted = allocations - before;
 

@@ -1,4 +1,4 @@
-// Every vector of spec/vectors, and every way of spoiling the valid ones.
+// Tests every vector of spec/vectors, and every way of spoiling the valid ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -75,7 +75,7 @@ test::Decoded decode_all(Decoder& decoder, const Bytes& file) {
 }
 
 TEST(DecoderHpp, AllVectorsDecodeAsThroughTheCInterface) {
-    Decoder decoder;  // one for all: what a file leaves in it must not reach the next
+    Decoder decoder;  // one for all files: none may affect the next
     size_t files = 0;
     for (const char* folder : {"valid", "invalid"}) {
         for (const auto& entry :

@@ -115,7 +115,7 @@ TEST(Decoder, CallersMistakesAreTold) {
     EXPECT_EQ(decode(&f.info, b, n, 0, 0, x.data(), memory, s - 1), GIM_SCRATCH_TOO_SMALL);
     EXPECT_EQ(gim_read_info(b, n, nullptr, nullptr), GIM_BAD_ARGUMENT);
     EXPECT_EQ(gim_read_info(nullptr, n, nullptr, nullptr), GIM_BAD_ARGUMENT);
-    // Information about another file.
+    // The gim_info belongs to another file.
     const auto other = vector_file("two-images-lossy");
     EXPECT_EQ(decode(&f.info, other.data(), other.size(), 0, 0, x.data(), memory, s), GIM_BAD_ARGUMENT);
     gim_chunk chunk;
@@ -124,7 +124,7 @@ TEST(Decoder, CallersMistakesAreTold) {
 
 TEST(Decoder, WritesNothingBeyondItsOutputs) {
     const Opened f(vector_file("sphere-33-lossy"));
-    // Exact allocations: the address sanitizer sees one element too far; without it the guards do.
+    // Exact allocations: the address sanitizer sees one element too many; without it the guards do.
     std::vector<float> mesh(f.level.vertex_count * 3 + 1, 7.0f), normals(f.level.vertex_count * 3 + 1, 7.0f);
     std::vector<uint32_t> triangles(f.level.triangle_count * 3 + 1, 7u);
     Scratch scratch(f.level.scratch_size + 16);

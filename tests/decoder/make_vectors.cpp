@@ -1,5 +1,5 @@
 // Writes the conformance vectors: make_vectors FOLDER fills FOLDER/valid and FOLDER/invalid anew.
-// Not part of any test: the files are committed, and a change of theirs is a change of the format.
+// No test runs it: the files are committed. If they change, the format has changed.
 // Positions are integers made here, so that the files do not depend on a machine's floating point.
 #include <cmath>
 #include <cstdio>
@@ -26,7 +26,7 @@ using namespace gim::test;
 namespace fs = std::filesystem;
 using Bytes = std::vector<uint8_t>;
 
-// ---- sidebands -------------------------------------------------------------------------------------------------------
+// ---- sidebands ------------------------------------------------------------------------------------------------------
 
 Sideband open_square() { return {2, 0, {}}; }
 // Every side is folded at its middle: genus 0, the corners are one point.
@@ -36,9 +36,9 @@ Sideband torus() { return {3, 0, {{2, 2}, {3, 2}, {0, 2}, {1, 2}}}; }
 // Two opposite sides are one, the others stay: a tube.
 Sideband tube() { return {3, 0, {{2, 2}, {kNoMate, 2}, {0, 2}, {kNoMate, 2}}}; }
 
-// ---- images ----------------------------------------------------------------------------------------------------------
+// ---- images ---------------------------------------------------------------------------------------------------------
 
-// A smooth hill of integers, noise of 0 .. noise-1 on it, and both sides of every seam equal.
+// A smooth hill of integers with noise of 0 .. noise-1. Both sides of every seam are equal.
 SquareImage hill(uint32_t side, Sideband sideband, uint32_t noise, uint32_t seed) {
     SquareGrid image{side, {}};
     Random random(seed);
@@ -88,7 +88,7 @@ Bytes encode(const std::vector<SquareImage>& images, const CodingParameters& par
     return file.value();
 }
 
-// Values of undefined samples come from a search with floats: on another machine they may differ, and so may these bytes.
+// A search with floats chooses the values of undefined samples. On another machine these bytes may differ.
 Bytes encode(const ChartLevels& charts, const CodingParameters& parameters) {
     auto writer = charts_writer(charts, parameters);
     if (!writer.ok()) {
@@ -98,7 +98,7 @@ Bytes encode(const ChartLevels& charts, const CodingParameters& parameters) {
     return writer.value().write(parameters.quantizer);
 }
 
-// A plane of whole numbers: a slope in the first component, a hill and stripes in the others.
+// An attribute plane of integers: a slope in the first component, a hill and stripes in the others.
 Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
     Bytes exponents;
     std::vector<Bytes> streams;
@@ -121,7 +121,7 @@ Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
     return serialize_plane(quantizer, exponents, streams);
 }
 
-// The same of a rectangle of charts, 2^exponent samples per sample of it and direction.
+// The same for a rectangle of charts: 2^exponent samples per sample and direction.
 Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quantizer, float first) {
     const uint32_t columns = ((width - 1) << exponent) + 1, rows = ((height - 1) << exponent) + 1;
     std::vector<float> values;
@@ -138,7 +138,7 @@ Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quant
     return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1, CoefficientKind::kPlanes));
 }
 
-// ---- files in parts --------------------------------------------------------------------------------------------------
+// ---- files in parts -------------------------------------------------------------------------------------------------
 
 struct Parts {
     Header header;
@@ -161,7 +161,7 @@ Parts take_apart(const Bytes& file) {
     return parts;
 }
 
-// Sizes and checksums are made right again.
+// Corrects sizes and checksums.
 Bytes put_together(Parts parts) {
     parts.header.side_exponents = parts.exponents;
     for (size_t i = 0; i < parts.chunks.size(); ++i) {
@@ -192,7 +192,7 @@ Bytes with_parts(const Bytes& file, const std::function<void(Parts&)>& change) {
     return put_together(std::move(parts));
 }
 
-// Bytes of header and index changed by hand, then a right checksum; index_size as before.
+// Changes bytes of header and index by hand, then corrects the checksum. Keeps index_size.
 Bytes with_index_bytes(Bytes file, const std::function<void(Bytes&)>& change) {
     const uint32_t size = take_apart(file).header.index_size;
     change(file);
@@ -201,7 +201,7 @@ Bytes with_index_bytes(Bytes file, const std::function<void(Bytes&)>& change) {
     return file;
 }
 
-// ---- output ----------------------------------------------------------------------------------------------------------
+// ---- output ---------------------------------------------------------------------------------------------------------
 
 void write_bytes(const fs::path& path, const Bytes& bytes) {
     std::ofstream(path, std::ios::binary)
@@ -246,7 +246,7 @@ void write_valid(Writer& out) {
     out.valid("sphere-33-lossy", encode({hill(33, folded_sides(), 5, 3)}, lossy(12, 9, 4)));
     out.valid("torus-17-lossless", encode({hill(17, torus(), 40, 4)}, lossless(12, 3)));
     out.valid("torus-33-lossy", encode({hill(33, torus(), 3, 5)}, lossy(14, 5, 20)));
-    // No byte at all is a stream, of empty blocks.
+    // A stream without bytes is valid: it has empty blocks only.
     out.valid("empty-finest-level", with_parts(encode({hill(17, torus(), 40, 4)}, lossless(12, 3)),
                                                [](Parts& p) { p.payloads.back().clear(); }));
     out.valid("tube-9-lossless", encode({hill(9, tube(), 3, 6)}, lossless(10, 9)));
@@ -262,7 +262,7 @@ void write_valid(Writer& out) {
         out.valid("schema-33-lossy-" + std::to_string(genus), encode({hill(33, s, 6, 14)}, lossy(12, 17, 5)));
     }
 
-    // No frames; and the same integers in frames without areas, and with steps as far apart as they get.
+    // No frames; then the same integers in frames without areas, and with steps as far apart as possible.
     const SquareImage folded = hill(33, folded_sides(), 5, 3);
     const Bytes framed = encode({folded}, lossy(12, 9, 4));
     out.valid("frames-none", with_parts(framed, [&](Parts& p) {
@@ -289,7 +289,7 @@ void write_valid(Writer& out) {
     measured.level_psnr = true;
     out.valid("level-psnr",
               set_level_psnr(encode({hill(17, folded_sides(), 2, 15)}, measured), std::vector<double>{73.9, 60.25, 0}));
-    // Finer and coarser than the image; the text may come last.
+    // Planes finer and coarser than the image; the text may come last.
     CodingParameters planes = lossy(12, 9, 30);
     planes.planes = {{ChunkType::kNormals, plane({33}, 48, 200)}, {ChunkType::kColors, plane({9}, 6, 20)}};
     planes.text = "with planes";
@@ -308,13 +308,13 @@ void write_valid(Writer& out) {
               with_parts(encode({hill(5, open_square(), 0, 1)}, lossless(8, 3)), [](Parts& p) {
                   insert_chunk(&p, 0, 77, true, {1, 2, 3});
                   insert_chunk(&p, 2, (1u << 30) - 1, true, {});
-                  p.chunks[0].zstd = true;  // whatever is in it, it is skipped
+                  p.chunks[0].zstd = true;  // it is skipped, whatever it holds
                   p.chunks[0].raw_size = 1u << 20;
               }));
 }
 
-// Of the encoder's own making: gim encode --layout mcgim --charts 4 --samples 1500 of a torus of 24 x 12 quads. The bytes stay
-// whatever becomes of the encoder.
+// The encoder made this: gim encode --layout mcgim --charts 4 --samples 1500 of a torus of 24 x 12 quads. The bytes
+// stay even if the encoder changes.
 Bytes kept_vector(const fs::path& folder) { return read_bytes(folder / "valid/charts-encoder-lossy.gim"); }
 
 void write_valid_charts(Writer& out, const Bytes& kept) {
@@ -427,7 +427,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
         return b;
     }());
     out.invalid("malformed.images-beyond-the-index", with_index_bytes(plain, [](Bytes& b) { b[12] = 100; }));
-    // The last chunk of the index ends in Size and CRC: Size gets a continuation bit, so that a field is missing.
+    // The index ends in Size and CRC of the last chunk. A continuation bit in Size makes a field go missing.
     const uint32_t plain_index = take_apart(plain).header.index_size;
     out.invalid("malformed.chunk-cut-off", with_index_bytes(plain, [&](Bytes& b) { b[plain_index - 4 - 3] |= 0x80; }));
     out.invalid("need-more-input.chunk-of-a-tebibyte", [&] {
@@ -640,7 +640,7 @@ void write_invalid_payloads(Writer& out, const Bytes& plain, const Bytes& sphere
     // 0010: node side 5, ring 16; start 0000; 001 a boundary of 1 + 0000; 01 a path of 1 + 111, room for 15 / 2 only.
     seams("malformed.sideband-path-too-long", torus_file, {0x20, 0x20, 0xF0, 0, 0});
     {
-        // A boundary of one edge between the two ends of a seam: both its ends are one point, at the finest level too.
+        // A boundary of one edge joins the two ends of a seam. Both its ends are one point, at the finest level too.
         Sideband s = {17, 0, {{2, 31}, {kNoMate, 1}, {0, 31}, {kNoMate, 1}}};
         Bytes b;
         append_sideband(s, &b);

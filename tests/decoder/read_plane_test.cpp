@@ -21,7 +21,7 @@ Bytes vector_file(const std::string& name) {
     return bytes;
 }
 
-// The file with another payload in one of its plane chunks, checksums right again.
+// The file with another payload in one of its plane chunks and with correct checksums.
 Bytes with_plane(const Bytes& file, ChunkType type, const std::function<void(Bytes&)>& change) {
     Header header;
     EXPECT_EQ(parse_header(file, {}, &header), Status::kOk);
@@ -40,7 +40,7 @@ Bytes with_plane(const Bytes& file, ChunkType type, const std::function<void(Byt
     }
     Bytes out = serialize_header(header, chunks);
     out.insert(out.end(), payloads.begin(), payloads.end());
-    out.shrink_to_fit();  // sanitizers see one byte too far
+    out.shrink_to_fit();  // so that sanitizers notice one byte too many
     return out;
 }
 
@@ -129,7 +129,7 @@ TEST(ReadPlane, RefusesSmallScratchAndNullPointers) {
     EXPECT_EQ(call(values.data(), scratch.data(), plane.scratch_size), GIM_OK);
 }
 
-// Payloads that the checksum does not protect: whatever comes out is finite and within bounds, or a refusal.
+// Bad payloads with a right checksum: the decoder refuses them, or its values are finite and within bounds.
 void expect_harmless(const Bytes& file) {
     for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
         const Plane plane = decode(file, kind);
@@ -160,7 +160,7 @@ TEST(ReadPlane, EveryFlippedBitOfAPayloadIsHarmless) {
             size_t size = 0;
             with_plane(file, type, [&](Bytes& b) { size = b.size(); });
             for (size_t bit = 0; bit < 8 * size; ++bit) {
-                // An exponent of 13 is a valid, huge plane: its memory is not the point here.
+                // An exponent of 13 makes a valid, huge plane. Its memory is not what we test.
                 if (bit >= 40 && bit < 56) continue;
                 expect_harmless(with_plane(
                     file, type, [&](Bytes& b) { b[bit / 8] = static_cast<uint8_t>(b[bit / 8] ^ 1u << bit % 8); }));

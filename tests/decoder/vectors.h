@@ -1,4 +1,4 @@
-// Reading the conformance vectors: what spec/vectors/README.md says a decoder must do with each of them.
+// Reads the conformance vectors: what spec/vectors/README.md says a decoder must do with each of them.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace gim::test {
 
-// All levels that can be closed of all images, in order, then the planes; the first failure ends it.
+// All levels that can be closed of all images, in order, then the planes. Stops at the first failure.
 struct Decoded {
     gim_status status = GIM_OK;
     std::vector<float> samples;       // of gim_decode_grid
@@ -102,7 +102,7 @@ std::vector<uint8_t> to_bytes(const std::vector<T>& values) {
     return bytes;
 }
 
-// The status that the name of an invalid vector asks for: the word before the first dot. GIM_OK: no such word.
+// The status that the name of an invalid vector asks for: the word before the first dot. GIM_OK if there is none.
 inline gim_status status_of_name(const std::string& file_name) {
     const std::string word = file_name.substr(0, file_name.find('.'));
     if (word == "need-more-input") return GIM_NEED_MORE_INPUT;

@@ -1,4 +1,4 @@
-// Layout::kAuto: which layout becomes of it.
+// Layout::kAuto: which layout it chooses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ struct Choice {
           charts(encoded_as(Layout::kMcgim, mesh, rate)),
           automatic(encoded_as(Layout::kAuto, mesh, rate)) {}
 
-    // Decibels by which charts are nearer to the mesh with as many samples.
+    // By how many decibels charts are nearer to the mesh at the same number of samples.
     double gain_of_charts() const { return charts.report.error.psnr - squares.report.error.psnr; }
 };
 

@@ -29,7 +29,7 @@ TriangleMesh as_input(const Mesh& mesh) {
     return result;
 }
 
-// The decoded surface has the input's topology at every level that the file says it can close.
+// At every level that the file says it can close, the decoded surface has the input's topology.
 void expect_topology_at_every_level(const Encoded& encoded, const std::string& name) {
     const auto coarsest = coarsest_level(encoded.bytes);
     ASSERT_TRUE(coarsest.ok()) << name;
@@ -129,7 +129,7 @@ TEST(Encode, ObserverSeesStatesWhoseMapsFitTheirMeshes) {
     EXPECT_EQ(names.front(), "cut-00");
     EXPECT_EQ(names.back(), "image-fitted");
     EXPECT_EQ(watched.value().bytes,
-              encode(corpus::limbed_blob(24), options).value().bytes);  // looking changes nothing
+              encode(corpus::limbed_blob(24), options).value().bytes);  // watching changes nothing
 }
 
 TEST(Encode, LossyFilesKeepTheTopologyToo) {
@@ -179,7 +179,7 @@ TEST(Encode, ByteBudgetIsKeptAndUsed) {
     EXPECT_FALSE(encode(corpus::torus(60, 30, 1, 0.4), options).ok());
 }
 
-// Samples are fitted to the codec, and the rate search goes around that fit.
+// Samples are fitted to the codec; the rate search includes that fit.
 EncodeOptions coded_options() {
     EncodeOptions options = small_options();
     options.fit = FitStrength::kAuto;
@@ -223,7 +223,7 @@ TEST(Encode, OfTwoSidesTheBetterFileIsKept) {
     }
 }
 
-// A fit to too coarse a quantizer heaps samples up for good: the search has to begin anew.
+// A fit to a too coarse quantizer heaps samples up for good. So the search has to begin anew.
 TEST(Encode, TargetsOfAHandfulOfBytesAreMetByFilesFittedToTheCodec) {
     const TriangleMesh mesh = bumpy_sphere();
     EncodeOptions options = coded_options();
@@ -286,7 +286,7 @@ TEST(Encode, SameBytesAtAnyThreadCount) {
 }
 
 TEST(Encode, LosslessSamplesAreWithinHalfAStep) {
-    // Twice the same samples with many and with few bits: no coordinate may differ by more than the steps allow.
+    // The same samples with many and with few bits: no coordinate may differ by more than the steps allow.
     EncodeOptions options = small_options();
     options.bits = 8;
     const TriangleMesh mesh = corpus::sphere(12);

@@ -31,7 +31,7 @@ inline SquareImage image_of(uint32_t side, const Sideband& sideband, const std::
     return glue_square(std::move(grid), sideband).value();
 }
 
-// A torus, opposite sides of the square glued; the grid slants so that it misses the lines of a regular mesh.
+// A torus: opposite sides of the square are glued. The grid slants so that it misses the lines of a regular mesh.
 inline SquareImage torus_image(uint32_t side, double radius, double tube_radius) {
     const Sideband sideband{2, 0, {{2, 1}, {3, 1}, {0, 1}, {1, 1}}};
     SquareImage image = image_of(side, sideband, [=](double u, double v) {
@@ -48,11 +48,11 @@ inline SquareImage torus_image(uint32_t side, double radius, double tube_radius)
     return image;
 }
 
-// The gluing of an image whose mask and seams are in order.
+// The gluing of an image with a valid mask and valid seams.
 inline void glue(MultiChartImage& image) { image.gluing = glue_charts(image.mask, image.seams).value(); }
 
-// A sphere of radius 1 as two charts of side x side samples, a column apart, zipped all around. The first lacks its lower
-// left corner, which makes a cell of three; and its second sample is the same surface point as its first.
+// A sphere of radius 1 as two charts of side x side samples, a column apart, zipped all around. The first lacks its
+// lower left corner, so that a cell has three samples. Its second sample is the same surface point as its first.
 inline MultiChartImage sphere_charts(uint32_t side) {
     MultiChartImage image;
     const uint32_t width = 2 * side + 1, length = 2 * (side - 1);
@@ -85,7 +85,7 @@ inline MultiChartImage sphere_charts(uint32_t side) {
     return image;
 }
 
-// One path all around: the rim of the square is the boundary of the surface.
+// A square with one path all around: its rim is the boundary of the surface.
 inline Sideband open_sideband() { return {2, 0, {{kNoMate, 4}}}; }
 
 }  // namespace gim

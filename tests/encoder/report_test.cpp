@@ -1,4 +1,4 @@
-// What encode() tells and promises, seen from outside: options that must have their effect, figures that must agree.
+// What encode() reports and promises, seen from outside: options have their effect, figures agree.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -7,7 +7,7 @@
 namespace gim {
 namespace {
 
-// The weights of a point give back the point, and are those of the triangle that it lies in.
+// The weights of a point reproduce the point. They are those of the triangle that it lies in.
 TEST(CellPoint, WeightsGiveBackThePointInsideItsTriangle) {
     constexpr uint32_t kSide = 5;
     for (double row = 0; row <= kSide - 1; row += 0.23) {
@@ -25,7 +25,7 @@ TEST(CellPoint, WeightsGiveBackThePointInsideItsTriangle) {
                 EXPECT_NEAR(sum, 1, 1e-12);
                 EXPECT_NEAR(at_row, row, 1e-12);
                 EXPECT_NEAR(at_column, column, 1e-12);
-                // One corner is not of the triangle: an end of the other diagonal.
+                // One corner is outside the triangle: an end of the other diagonal.
                 EXPECT_NEAR(main ? std::min(w[1], w[2]) : std::min(w[0], w[3]), 0, 1e-12);
             }
         }

@@ -30,7 +30,7 @@ struct Read {
     ChartTable table;
 };
 Read read(Bytes bytes, const Header& header, const ContainerLimits& limits = {}) {
-    bytes.shrink_to_fit();  // sanitizers see one byte too far
+    bytes.shrink_to_fit();  // so that sanitizers notice one byte too many
     Read result;
     const auto reader = std::make_unique<ChartTableReader>();
     result.status = reader->open(bytes, header, limits);
@@ -79,7 +79,7 @@ ChartTable random_table(Random& random, const Header& header) {
         for (uint32_t k = 0; k < chart.path_count; ++k) table.mates.push_back(kUnmated);
         table.charts.push_back(chart);
     }
-    // Some are mates, in any order.
+    // Some paths are mates, in any order.
     std::vector<uint32_t> order(table.mates.size());
     for (uint32_t p = 0; p < order.size(); ++p) order[p] = p;
     for (uint32_t p = static_cast<uint32_t>(order.size()); p > 1; --p) std::swap(order[p - 1], order[random.below(p)]);
@@ -106,7 +106,7 @@ const Header kTwo = rectangle(16, 9, 2);
 TEST(ChartTable, HandWrittenBytesAreRead) {
     // 2 charts, margin 2, 4 bits a side, 20 vertices, 24 triangles; 6, 8. Then column 0..17 in 5 bits, row 0..10 in 4:
     // 0100 0011 00010 0010 | 011 01 01 00 | 0010 1000 01100 0000 | 010 10 1 | 0000000
-    // The second chart's first path has two open ones to choose from, of which bit 0 is the one opened last; its second
+    // The second chart's first path has two open ones to choose from; bit 0 means the one opened last. Its second path
     // has one, which takes no bit.
     const Bytes bytes = {2,          2,          4,          20,         24,         6,          8,
                          0b01000011, 0b00010001, 0b00110101, 0b00001010, 0b00011000, 0b00001010, 0b10000000};
@@ -238,7 +238,7 @@ TEST(ChartTable, StepsAreHalvingsThatLeaveTwoSamplesEachWay) {
     EXPECT_EQ(steps(9, 10), 3u);
     EXPECT_EQ(steps(16385, 16385), 14u);
     EXPECT_EQ(steps(kMaxChartSide, kMaxChartSide), 14u);
-    // As many levels as steps and the base.
+    // As many levels as there are steps, plus the base.
     RawTable table;
     table.sizes = {{3, 1}, {3, 1}, {3, 1}};
     table.charts = {{5, 5, 0, 0, 0, "-"}};
@@ -251,7 +251,7 @@ TEST(ChartTable, ManyPathsAndChartsAreTakenAndOneMoreIsNot) {
     const Header header = rectangle(100, 100, 1);
     RawTable table;
     table.sizes = {{3, 1}};
-    // All open ones first, then their mates.
+    // All open paths first, then their mates.
     table.charts = {{2, 2, 0, 0, 0, std::string(kMaxChartPaths / 2, '<')},
                     {2, 2, 0, 0, 0, std::string(kMaxChartPaths / 2, '0')}};
     EXPECT_EQ(read(test::table_bytes(table, 100, 100), header).status, Status::kOk);

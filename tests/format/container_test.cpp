@@ -35,7 +35,7 @@ Status parse(const std::vector<uint8_t>& bytes, Header* h, const ContainerLimits
     return parse_header(bytes, limits, h);
 }
 
-// Index_Size is one byte in these files; the body may be changed and signed again.
+// Index_Size is one byte in these files, so the body can be changed and signed again.
 std::vector<uint8_t> signed_again(std::vector<uint8_t> bytes) {
     bytes.resize(bytes.size() - 4);
     append_u32(crc32(bytes), &bytes);
@@ -73,7 +73,7 @@ TEST(Container, HandWrittenBytesParse) {
     EXPECT_FALSE(walk.next(&c, &offset));
 }
 
-// Lossy, quantizer 1.5, and what the next two bytes say; a file of one level, whose index may be cut short.
+// A lossy file of one level with quantizer 1.5 and the next two bytes as given. Its index may be cut short.
 std::vector<uint8_t> lossy_bytes(std::vector<uint8_t> tangential_and_area) {
     std::vector<uint8_t> bytes = {0x89, 'G', 'I', 'M',  0x0D, 0x0A, 0x1A, 1,   0, 0x04, 12, 1, 1,
                                   2,    0,   0,   0,    0,    0,    0,    0,   0, 0,    0,  0, 0,  // origin 0

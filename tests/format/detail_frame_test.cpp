@@ -21,7 +21,7 @@ struct Place {
     uint32_t row, column;
 };
 
-// All details of the three bands that go with a small image.
+// All details of the three bands that belong to a small image.
 std::vector<Place> places(uint32_t columns, uint32_t rows) {
     std::vector<Place> all;
     for (const Orientation orientation : kOrientations) {
@@ -92,7 +92,7 @@ TEST(DetailFrame, FirstAxisIsTheNormalAndSecondRunsAlongTheRow) {
     }
 }
 
-// Each detail sits between samples of the small image; those around it give its tangents. A peak tells which ones.
+// Each detail lies between samples of the small image; those around it give its tangents. A peak shows which ones.
 TEST(DetailFrame, OnlySamplesAroundTheDetailCount) {
     const std::vector<float> flat = sheet(kSide);
     for (const Place& p : places(kSide, kSide)) {
@@ -116,7 +116,7 @@ TEST(DetailFrame, OnlySamplesAroundTheDetailCount) {
     }
 }
 
-// Written out with numbers, as spec/gim-format.md has them.
+// Computed with written-out numbers, as in spec/gim-format.md.
 TEST(DetailFrame, TangentsAreThoseOfTheText) {
     Random random(5);
     std::vector<float> image(3 * size_t{5} * 4);
@@ -277,7 +277,7 @@ TEST(DetailFrame, HostileImagesHaveFiniteFrames) {
     }
 }
 
-// A decoder makes many at once, some of which are hostile.
+// A decoder makes many frames at once. Some are hostile.
 TEST(DetailFrame, AreTheSameOneByOneAndTogether) {
     std::vector<float> image = sheet(kSide);
     for (size_t i = 0; i < 3 * 40; ++i) image[i + 300] = i < 60 ? 0.0f : std::nanf("");

@@ -74,7 +74,7 @@ TEST(Fuse, NothingMovesWhereAllAgree) {
 }
 
 TEST(Fuse, CorrectionsFadeTowardsTheInsideAndStop) {
-    // A step of one between the two sides of the cut, nothing else.
+    // Only the two sides of the cut differ, by a step of one.
     const Sideband fold = {65, 16, {{1, 128}, {0, 128}}};
     Fixture f(65, fold, 3);
     std::fill(f.x.begin(), f.x.end(), 0.0f);
@@ -83,7 +83,7 @@ TEST(Fuse, CorrectionsFadeTowardsTheInsideAndStop) {
     f.run();
     const uint32_t width = diffusion_width(65);
     EXPECT_EQ(width, 4u);
-    // Inwards from the middle of the last column: one half, fading.
+    // Inwards from the middle of the last column the correction starts at one half and fades.
     float last = 0.5f;
     for (uint32_t depth = 0; depth <= width; ++depth) {
         const float v = f.x[(32 * 65 + 64 - depth) * 3];

@@ -1,5 +1,5 @@
-// Random valid sidebands: polygonal schemas of any genus and with boundaries. Own generator: the same on every
-// platform.
+// Random valid sidebands: polygonal schemas of any genus, with boundaries. They have a generator of their own, so that
+// they are the same on every platform.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ class Random {
     uint64_t state_;
 };
 
-// pairs mated paths and open ones in random order on the ring of that node grid; `nested`: mates like brackets (a tree,
-// so genus 0), else any order. Needs 2*pairs + open <= ring length.
+// Puts `pairs` pairs of mates and `open` open paths in random order on the ring of that node grid. nested: mates nest
+// like brackets (a tree: genus 0); else any order. Needs 2*pairs + open <= ring length.
 inline Sideband random_sideband(Random& random, uint32_t node_side, uint32_t pairs, uint32_t open, bool nested) {
     const uint32_t count = 2 * pairs + open;
     Sideband s;
@@ -58,7 +58,7 @@ inline Sideband random_sideband(Random& random, uint32_t node_side, uint32_t pai
             }
         }
     }
-    // Everyone gets one unit; the rest is dealt out at random, two units at a time to pairs.
+    // Every path gets one unit. The rest is dealt out at random; a pair takes two units.
     for (CutPath& p : s.paths) p.length = 1;
     uint32_t left = ring_length(node_side) - count;
     while (left > 0) {

@@ -1,5 +1,5 @@
-// A chart table and a level's borders, field by field as spec/gim-format.md 11.1 and 11.3 have them, so that tests can write
-// what the encoder never does. Not built upon format/chart_table.cpp and chart_border.h: a second reading of the text.
+// A chart table and a level's borders, field by field as in spec/gim-format.md 11.1 and 11.3, so that tests can write
+// what the encoder never does. A second reading of the text: it does not use format/chart_table.cpp or chart_border.h.
 #pragma once
 
 #include <array>
@@ -72,7 +72,7 @@ class RawBorderWriter {
   public:
     explicit RawBorderWriter(RangeEncoder* coder) : coder_(*coder) {}
 
-    // columns, rows: of the box, for the width of the fields.
+    // columns, rows: of the box; they set the width of the fields.
     void begin_chart(uint32_t columns, uint32_t rows, uint32_t column, uint32_t row) {
         coder_.code_raw(column, static_cast<uint32_t>(std::bit_width(columns - 1)));
         coder_.code_raw(row, static_cast<uint32_t>(std::bit_width(rows - 1)));
@@ -98,7 +98,7 @@ class RawBorderWriter {
             direction_ = direction;
         }
     }
-    // A step of 11.3 per digit; those that are not coded are given too.
+    // A step of 11.3 per digit, including those that are not coded.
     void zipper(int64_t first, int64_t second, const std::string& steps) {
         const int64_t longer = first > second ? first : second;
         int64_t a = first, b = second;

@@ -31,7 +31,7 @@ uint64_t place_in_stream(const DetailPlace& place) {
 
 TEST(Rim, TorusByHand) {
     const SeamTable torus = table_of({2, 0, {{2, 1}, {3, 1}, {0, 1}, {1, 1}}});
-    // Top and bottom rows run in opposite directions, as do the right and the left column, whose left one is stored.
+    // Top and bottom rows run in opposite directions; so do left and right columns, of which the left one is stored.
     const uint32_t n = kRunEnd;
     EXPECT_EQ(sources(torus, 5), (std::vector<uint32_t>{n, 1, 2, 3, n, 15, 6, 13, n, 3, 10, 1, n, 13, 14, 15}));
     EXPECT_EQ(sources(torus, 3), (std::vector<uint32_t>{n, 1, n, 7, n, 1, n, 7}));
@@ -77,7 +77,7 @@ TEST(Rim, MatesShareOneDetailAndItIsTheFirstInTheStream) {
         });
         EXPECT_GT(copies, 0u);
         EXPECT_FALSE(rim.is_copy(Orientation::kDiagonal, 0, 0));
-        // Runs end at cut-nodes, and where the other side of the path has a corner of the square.
+        // Runs end at cut-nodes, and at samples whose mate is a corner of the square.
         for (uint32_t k = 0; k < source.size(); k += 2) {
             bool is_end = false;
             for (uint32_t path = 0; path < seams.path_count; ++path)

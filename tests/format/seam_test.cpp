@@ -51,7 +51,7 @@ TEST(RingClasses, TorusHasOneNode) {
     EXPECT_EQ(c, (std::vector<uint32_t>{0, 1, 2, 3, 0, 4, 5, 6, 0, 3, 2, 1, 0, 6, 5, 4}));
 }
 
-// The definition, step by step: glue the edges of mates one by one with a union-find over samples.
+// Applies the definition step by step: a union-find over samples glues the edges of mates one by one.
 TEST(RingClasses, AgreeWithGluingEdgeByEdge) {
     test::Random random(11);
     for (int round = 0; round < 2000; ++round) {

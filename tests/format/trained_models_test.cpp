@@ -28,7 +28,7 @@ std::string weights_line(const std::string& name, const BandWeights& w) {
     return line;
 }
 
-// The expected text goes into the specification as it is when the tables change.
+// If the tables change, the expected text goes into the specification as it is.
 TEST(TrainedModels, WeightsAreThoseOfTheSpecification) {
     std::string expected = weights_line("base first", kBaseWeights[0]) + weights_line("base later", kBaseWeights[1]);
     for (const size_t kind : {0u, 1u, 2u}) {

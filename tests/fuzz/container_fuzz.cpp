@@ -1,5 +1,5 @@
-// libFuzzer: header, index, sidebands, chart tables and borders. The checksum of header and index is made right first, so that what is behind it is
-// reached.
+// libFuzzer: header, index, sidebands, chart tables and borders. Corrects the checksum of header and index first, so
+// that the fuzzer gets behind it.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace gim;
 
-// The bytes as a chart table of that rectangle, and as the borders of a level of it.
+// Reads the bytes as a chart table of that rectangle, and as the borders of one of its levels.
 void read_charts(std::span<const uint8_t> bytes, uint32_t width, uint32_t height, uint32_t level_count) {
     Header header;
     header.layout = FileLayout::kCharts;

@@ -1,4 +1,4 @@
-// libFuzzer: the whole C interface. Checksums are made right first, so that streams are reached.
+// libFuzzer: the whole C interface. Corrects checksums first, so that the fuzzer gets to the streams.
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -44,7 +44,7 @@ void sign(std::vector<uint8_t>* bytes) {
     for (size_t i = 0; i < 4; ++i) (*bytes)[body + i] = static_cast<uint8_t>(crc >> (8 * i));
 }
 
-// Fills memory, so that what is read before it is written shows.
+// Fills memory, so that a read before the first write shows.
 void spoil(gim::Scratch& memory, int value) { std::memset(memory.data(), value, memory.size()); }
 bool same(const std::vector<float>& a, const std::vector<float>& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
@@ -80,7 +80,7 @@ void decode(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t im
         if (!std::isfinite(v) && !(charts && std::isnan(v))) __builtin_trap();
     for (size_t i = 0; i < t.size(); ++i) {
         if (t[i] >= l.vertex_count || grid_t[i] >= samples) __builtin_trap();
-        // Charts of hostile files may lie upon each other at level 0.
+        // Charts of hostile files may overlap at level 0.
         if (charts && level == 0) continue;
         if (std::memcmp(&x[t[i] * size_t{3}], &grid[grid_t[i] * size_t{3}], 12) != 0) __builtin_trap();
     }

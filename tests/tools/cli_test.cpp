@@ -1,4 +1,4 @@
-// The gim program as its users meet it: exit status, what stands on stdout and stderr, what is left on the disk.
+// The gim program as its users meet it: exit status, stdout and stderr, files left on the disk.
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -29,7 +29,7 @@ struct Outcome {
     std::string out, err;
 };
 
-// Starts the program itself, no shell between.
+// Starts the program without a shell.
 Outcome gim(std::vector<std::string> arguments) {
     const TemporaryFolder folder;
     const std::string out = folder.file("out");
@@ -194,7 +194,7 @@ TEST_F(Cli, EvenSamplesAreNotWhereTheUsualOnesAre) {
     EXPECT_NE(file({"--even"}), file({}));
 }
 
-// A square against its left half: half of the square is up to 1 away from it, all of the half lies on the square.
+// A square against its left half: half of the square is up to 1 away from it; all of the half lies on the square.
 TEST_F(Cli, CompareTellsReferenceAndTestApart) {
     save(folder.file("whole.obj"), "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
     save(folder.file("half.obj"), "v -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4\n");
@@ -256,7 +256,7 @@ TEST_F(Cli, APrefixDecodesTheCoarseLevels) {
     EXPECT_EQ(decode.status, 0) << decode.err;
 }
 
-// ---- several charts -----------------------------------------------------------------------------------------------------
+// ---- several charts -------------------------------------------------------------------------------------------------
 
 TEST_F(Cli, ChartsGoAllTheWay) {
     const std::string file = folder.file("charts.gim");
@@ -339,7 +339,7 @@ TEST_F(Cli, UndefinedSamplesAreMaskedInImagesAndAbsentFromMeshes) {
     }
     ASSERT_EQ(gim({"decode", file, folder.file("charts.obj")}).status, 0);
     EXPECT_EQ(load_text(folder.file("charts.obj")).find("nan"), std::string::npos);
-    // All numbers of a GLB are words of four bytes, and its text is ASCII: none of them may look like a NaN.
+    // All numbers of a GLB are four-byte words, and its text is ASCII. None may look like a NaN.
     ASSERT_EQ(gim({"decode", file, folder.file("charts.glb")}).status, 0);
     const std::string glb = load_text(folder.file("charts.glb"));
     for (size_t i = 0; i + 4 <= glb.size(); i += 4) {
@@ -349,7 +349,7 @@ TEST_F(Cli, UndefinedSamplesAreMaskedInImagesAndAbsentFromMeshes) {
     }
 }
 
-// ---- what cannot be encoded --------------------------------------------------------------------------------------------
+// ---- what cannot be encoded -----------------------------------------------------------------------------------------
 
 struct Refusal {
     std::string name, content, word;  // `word` must be in the message
@@ -389,7 +389,7 @@ TEST_F(Cli, WhatIsNoMeshEndsWithAMessageAndNothingBehind) {
 }
 
 TEST_F(Cli, HeadersOfGimFilesThatClaimTooMuchAreRefused) {
-    // Every single byte of header and index set to its largest value: refused, quickly, with a message.
+    // Sets each byte of header and index to its largest value: the program must refuse quickly, with a message.
     const std::string whole = load_text(gim_path());
     for (size_t i = 0; i < 60; i += 3) {
         std::string claim = whole.substr(0, 100);
@@ -478,7 +478,7 @@ TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
 }
 
-// A headerless image of a sphere-like surface: opposite sides of the square differ, so it stays an open patch.
+// A headerless image of a sphere-like surface. Opposite sides of the square differ, so it stays an open patch.
 TEST_F(Cli, HeaderlessFloatImagesAreImported) {
     constexpr uint32_t kSide = 33;
     std::string raw;

@@ -1,4 +1,4 @@
-// write_file where the system refuses in the middle.
+// write_file if the system refuses in the middle.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -16,7 +16,7 @@ using test::load_text;
 using test::save;
 using test::TemporaryFolder;
 
-// While it lives, no file of this process can grow beyond `bytes`: a write ends short, the next one fails.
+// While it lives, no file of this process can grow beyond `bytes`: one write is cut short, the next one fails.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -62,7 +62,7 @@ TEST(FailedWrite, OfANewFileLeavesNothing) {
     EXPECT_TRUE(folder.names().empty());
 }
 
-// Who reads the old file while it is replaced goes on reading the old bytes.
+// A reader that has the old file open while it is replaced goes on reading the old bytes.
 TEST(FailedWrite, ReadersOfTheOldFileDoNotSeeTheNewOne) {
     const TemporaryFolder folder;
     const std::string path = folder.file("a.bin");

@@ -23,8 +23,8 @@ std::string message(std::string_view content, std::string_view extension) {
     return mesh.ok() ? "(was read)" : mesh.error().message;
 }
 
-// Two triangles that share an edge, a third on the same edge, one degenerate and one repeated: nothing that a half-edge
-// structure would keep.
+// Two triangles that share an edge, a third on the same edge, one degenerate and one repeated. A half-edge structure
+// could not keep them all.
 const std::vector<std::array<double, 3>> kPositions = {
     {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 4300000.125}, {0.1, 0.2, 0.3}};
 const std::vector<std::array<uint32_t, 3>> kTriangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {2, 2, 3}, {0, 1, 2}};
@@ -51,7 +51,7 @@ void put(std::string& out, T value, bool big_endian = false) {
 }
 
 std::string binary_ply(bool big_endian) {
-    // Unknown properties, lists and elements stand between what is wanted.
+    // Unknown properties, lists and elements stand between those that we want.
     std::string out = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
                       "_endian 1.0\nelement camera 1\nproperty list ushort short mystery\nelement vertex 5\n"
                       "property uchar red\nproperty double x\nproperty double y\nproperty double z\nelement face 5\n"
@@ -204,7 +204,7 @@ TEST(MeshRead, ClaimsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
 }
 
 TEST(MeshRead, EveryTruncationIsRefusedOrStillWhole) {
-    // A text may lose its last newline, or a digit of its last number; never anything before.
+    // A text may lose its last newline, or a digit of its last number, but nothing before that.
     for (const auto& [content, extension, harmless] :
          std::vector<std::tuple<std::string, std::string, size_t>>{{kAsciiPly, "ply", 1},
                                                                    {kOff, "off", 1},
@@ -234,8 +234,7 @@ TEST(MeshRead, PointCloudsAndShortFacesAreRefused) {
     EXPECT_NE(message("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "off").find("2 corners"), std::string::npos);
 }
 
-// ---- glTF
-// ------------------------------------------------------------------------------------------------------------
+// ---- glTF -----------------------------------------------------------------------------------------------------------
 
 std::string base64(const std::string& data) {
     static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -300,7 +299,7 @@ TEST(MeshRead, EqualPositionsAreWeldedInOrder) {
 }
 
 TEST(MeshRead, WeldingAnEdgeOfLengthZeroKeepsTheSurfaceClosed) {
-    // An octahedron whose top vertex is split into two at the same place, with the two slivers between them.
+    // An octahedron whose top vertex is split into two at the same place, with two slivers between them.
     const TriangleMesh split = {
         {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, -1}},
         {{0, 1, 4}, {1, 5, 4}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {3, 0, 4}, {1, 0, 6}, {2, 1, 6}, {3, 2, 6}, {0, 3, 6}}};

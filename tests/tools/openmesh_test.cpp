@@ -1,4 +1,4 @@
-// Other people's software reads what gim writes: OpenMesh, whose half-edges take nothing but manifolds.
+// OpenMesh, other people's software, reads what gim writes. Its half-edges accept only manifolds.
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>

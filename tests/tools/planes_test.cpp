@@ -1,4 +1,4 @@
-// Colours and normal maps on their way through the tools: mesh files in, decoded files out.
+// Colours and normal maps on their way through the tools: from mesh files to decoded files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -129,9 +129,9 @@ TEST(Colors, AFileThatClaimsHugeTexturesOrBadIndicesIsReadAllTheSame) {
     EXPECT_TRUE(appearance_complaint(input.mesh).empty());
 }
 
-// ---- out -------------------------------------------------------------------------------------------------------------
+// ---- out ------------------------------------------------------------------------------------------------------------
 
-// Colours that tell the place: red by row, green by column.
+// Colours that show the place: red by row, green by column.
 ImagePlane ramp(uint32_t side) {
     ImagePlane plane{side, side, {}};
     for (uint32_t r = 0; r < side; ++r) {

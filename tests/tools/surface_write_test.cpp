@@ -29,7 +29,7 @@ TriangleMesh read_back(const Bytes& bytes, MeshFormat format) {
     return mesh.ok() ? mesh.value() : TriangleMesh{};
 }
 
-// Text holds the shortest decimal form of a float, which read as double is not quite that float.
+// Text holds the shortest decimal form of a float. Read as a double it is not quite that float.
 std::vector<std::array<float, 3>> as_floats(const TriangleMesh& mesh) {
     std::vector<std::array<float, 3>> floats;
     for (const auto& p : mesh.positions) {
@@ -104,7 +104,7 @@ TEST(SurfaceWrite, ObjTextureCoordinatesDoNotJumpInsideATriangle) {
     EXPECT_EQ(faces, 128U);
 }
 
-// What the glTF specification asks of the container and of accessors.
+// Checks what the glTF specification asks of the container and of accessors.
 TEST(SurfaceWrite, GlbKeepsTheRulesOfTheSpecification) {
     const Result<Bytes> written = write_surface(SurfaceFormat::kGlb, two_tori());
     ASSERT_TRUE(written.ok());

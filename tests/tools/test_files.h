@@ -1,4 +1,4 @@
-// Shared by the tests of tools/: a folder that removes itself, small meshes and small decoded images.
+// Shared by the tests of tools/: a folder that removes itself, small meshes, small decoded images.
 #pragma once
 
 #include <algorithm>

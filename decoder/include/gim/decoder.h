@@ -183,7 +183,7 @@ GIM_API gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_
 /* Reads the text that the file carries about itself (META chunk): UTF-8, not zero-terminated.
  * text_size  receives its length in bytes, 0 if there is none. The length is a claim of the file: cap it before you
  *            allocate
- * text       capacity bytes; if the length is more, GIM_SCRATCH_TOO_SMALL. NULL to ask for the length only
+ * text       receives the text; if it is longer than capacity, GIM_SCRATCH_TOO_SMALL. NULL to ask for the length only
  * scratch    gim_text_scratch_size() bytes, aligned to 16 bytes; may be NULL if text is */
 GIM_API size_t gim_text_scratch_size(void);
 GIM_API gim_status gim_read_text(const gim_info* info, const void* bytes, size_t size, char* text, size_t capacity,

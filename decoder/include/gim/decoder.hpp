@@ -40,7 +40,7 @@ class Scratch {
     }
     ~Scratch() { release(); }
 
-    // Makes room for `size` bytes at least; contents are lost where it grows. Returns false if there is no memory.
+    // Makes room for at least `size` bytes. Contents are lost if it grows. Returns false if there is no memory.
     bool reserve(std::uint64_t size) noexcept {
         if (size <= size_) return true;
         release();
@@ -77,7 +77,7 @@ struct DecoderPlane : gim_plane_info {
     DecoderPlane() : gim_plane_info{} {}
 };
 
-// Where a decoded surface goes. n is vertex_count for a mesh and width * height for a grid. Empty: not wanted.
+// Where a decoded surface goes. n is vertex_count for a mesh, width * height for a grid. Leave unwanted spans empty.
 struct SurfaceSpans {
     std::span<float> positions;          // n * 3; always wanted
     std::span<float> normals;            // n * 3
@@ -93,7 +93,7 @@ class Decoder {
         info_ = {};
         return gim_read_info(bytes.data(), bytes.size(), limits, &info_);
     }
-    // Of the file that was opened last; zeros if that failed.
+    // The header and index of the file that was opened last; zeros if that failed.
     const gim_info& info() const noexcept { return info_; }
 
     gim_status read_level(std::uint32_t image, std::uint32_t level, DecoderLevel* out) const noexcept {
@@ -104,8 +104,8 @@ class Decoder {
         return GIM_OK;
     }
 
-    // Every span that is not empty must have the size that the level asks for, else GIM_BAD_ARGUMENT.
-    // level: as this decoder has read it from the file that is open.
+    // Decode one level. level: as this decoder has read it from the open file. Return GIM_BAD_ARGUMENT if a span is
+    // neither empty nor of the size that the level asks for.
     gim_status mesh(const DecoderLevel& level, const SurfaceSpans& out) noexcept {
         return decode(gim_decode_mesh, level, level.vertex_count, out);
     }
@@ -113,7 +113,7 @@ class Decoder {
         return decode(gim_decode_grid, level, std::uint64_t{level.width} * level.height, out);
     }
 
-    // kind: GIM_PLANE_... GIM_NO_SUCH_PLANE where the file has none of that kind.
+    // kind: GIM_PLANE_... Returns GIM_NO_SUCH_PLANE if the file has none of that kind.
     gim_status read_plane(std::uint32_t image, std::uint32_t kind, std::uint32_t level,
                           DecoderPlane* out) const noexcept {
         const gim_status status = gim_read_plane_info(&info_, bytes_.data(), bytes_.size(), image, kind, level, out);
@@ -123,7 +123,7 @@ class Decoder {
         out->level = level;
         return GIM_OK;
     }
-    // values: width * height * 3, else GIM_BAD_ARGUMENT.
+    // values: width * height * 3 numbers. Returns GIM_BAD_ARGUMENT on any other size.
     gim_status plane(const DecoderPlane& of, std::span<float> values) noexcept {
         if (values.empty() || values.size() != std::uint64_t{of.width} * of.height * 3) return GIM_BAD_ARGUMENT;
         if (!scratch_.reserve(of.scratch_size)) return GIM_SCRATCH_TOO_SMALL;
@@ -139,7 +139,7 @@ class Decoder {
     gim_status read_text_size(std::uint64_t* size) const noexcept {
         return gim_read_text(&info_, bytes_.data(), bytes_.size(), nullptr, 0, size, nullptr, 0);
     }
-    // out: of that length, else GIM_SCRATCH_TOO_SMALL or GIM_BAD_ARGUMENT.
+    // out: as long as the text. Returns GIM_SCRATCH_TOO_SMALL if it is shorter, GIM_BAD_ARGUMENT if it is longer.
     gim_status text(std::span<char> out) noexcept {
         std::uint64_t size = 0;
         if (const gim_status status = read_text_size(&size); status != GIM_OK) return status;
@@ -150,7 +150,7 @@ class Decoder {
                              scratch_.size());
     }
 
-    // class_of: 4 * (side - 1) entries, else GIM_BAD_ARGUMENT; empty: not wanted.
+    // class_of: 4 * (side - 1) entries, or empty if not wanted. Returns GIM_BAD_ARGUMENT on any other size.
     gim_status seams(const DecoderLevel& level, std::span<std::uint32_t> class_of,
                      std::uint32_t* path_count) const noexcept {
         if (!class_of.empty() && (level.side == 0 || class_of.size() != std::uint64_t{level.side - 1} * 4))

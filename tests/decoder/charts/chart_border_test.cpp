@@ -1,4 +1,4 @@
-// Borders and zippers through the coder and back, and against a second writer of the same bits.
+// Borders and zippers through the coder and back, and compared with a second writer of the same bits.
 #include "format/chart_border.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Walk {
     std::string directions;
 };
 
-// A closed walk without turning back: an octagon whose long sides zigzag here and there, in a box with some room.
+// A closed walk that never turns back: an octagon whose long sides zigzag here and there. The box has room to spare.
 Walk random_walk(Random& random) {
     std::array<uint32_t, 4> counts{};
     while (std::count(counts.begin(), counts.end(), 0u) > 2) {
@@ -65,7 +65,7 @@ Walk random_walk(Random& random) {
     return walk;
 }
 
-// Charts with their paths; zippers per second path, as in a file.
+// Charts with their paths. Zippers belong to second paths, as in a file.
 struct Level {
     std::vector<Walk> walks;
     std::vector<uint32_t> path_counts;
@@ -112,7 +112,7 @@ Level random_level(Random& random) {
     return level;
 }
 
-// Both directions; a decoder fills in the level, and in `glued` what its zippers say. False where the bytes are refused.
+// Runs either direction. A decoder fills in the level, and `glued` from its zippers. Returns false on bad bytes.
 template <class Coder>
 bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
     BorderCoder<Coder> border_coder(&coder, &models);
@@ -126,7 +126,7 @@ bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
         chart.first_path = first_path;
         chart.path_count = level.path_counts[c];
         chart.border_length = static_cast<uint32_t>(walk.samples.size());
-        // Exactly as much room as was promised: sanitizers see one sample too far.
+        // Exactly the promised room, so that sanitizers notice one sample too many.
         std::vector<uint32_t> samples(size_t{walk.columns} * walk.rows);
         std::copy_n(walk.samples.begin(), std::min(walk.samples.size(), samples.size()), samples.begin());
         chart.samples = samples.data();
@@ -149,7 +149,7 @@ bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
     return true;
 }
 
-// What a decoder knows beforehand.
+// What a decoder knows before it reads borders.
 Level without_borders(Level level) {
     for (Walk& walk : level.walks) walk.samples.clear();
     for (BorderPath& path : level.paths) path = {path.mate, 0, 0, path.chart};
@@ -283,7 +283,7 @@ TEST(ChartBorder, WhatIsNoBorderIsRefused) {
     EXPECT_FALSE(accepted(walk(0, 0, "6000224442")));        // at the low end,
     EXPECT_FALSE(accepted(walk(1, 0, "0244440660")));        // on the left
     EXPECT_FALSE(accepted(walk(0, 0, "000224446")));         // not closed
-    EXPECT_TRUE(accepted(walk(0, 0, "024602460246")));       // as long as the box has samples: no matter to the walk
+    EXPECT_TRUE(accepted(walk(0, 0, "024602460246")));       // as long as the box has samples: still valid
     EXPECT_FALSE(accepted(walk(0, 0, "0246024602460246")));  // longer
     const auto two = [](uint32_t first, uint32_t coded) {
         return [=](Writer& w) {

@@ -35,7 +35,7 @@ std::vector<std::string> chart_vectors() {
     return names;
 }
 
-// One level, decoded both ways into memory of exactly the size that was told.
+// One level, decoded as mesh and as grid into memory of exactly the announced size.
 struct Level {
     gim_status status = GIM_OK;
     gim_info info{};
@@ -174,7 +174,7 @@ TEST(ReadCharts, TextureCoordinatesAreThePlacesInTheRectangleAtEveryLevel) {
             ASSERT_EQ(finest.grid_texcoords[size_t{s} * 2], static_cast<float>(s % finest.level.width) / width);
             ASSERT_EQ(finest.grid_texcoords[size_t{s} * 2 + 1], static_cast<float>(s / finest.level.width) / height);
         }
-        // A coarse sample lies where a fine one does, or just outside of its chart: the surface is near it there.
+        // A coarse sample lies where a fine one does, or just outside of its chart: the surface is near it.
         for (uint32_t l = 1; l <= finest.level.coarsest_level; ++l) {
             const Level f = decode(file, l);
             ASSERT_EQ(f.status, GIM_OK);
@@ -211,7 +211,7 @@ TEST(ReadCharts, ALevelNeedsItsPrefixAndNoMore) {
         EXPECT_EQ(same.triangles, f.triangles);
         prefix.pop_back();
         EXPECT_EQ(decode(prefix, l).status, GIM_NEED_MORE_INPUT);
-        // Damage behind the prefix is no matter.
+        // Damage behind the prefix does not matter.
         Bytes damaged = file;
         if (f.level.prefix_size < file.size()) {
             damaged.back() ^= 1;
@@ -270,7 +270,7 @@ TEST(ReadCharts, LosslessSamplesAreWholeUnits) {
     }
 }
 
-// ---- files that claim too much -----------------------------------------------------------------------------------------
+// ---- files that claim too much --------------------------------------------------------------------------------------
 
 Bytes with_table(const Bytes& file, const test::RawTable& table, uint32_t width, uint32_t height) {
     Header header;
@@ -293,7 +293,7 @@ Bytes with_table(const Bytes& file, const test::RawTable& table, uint32_t width,
 }
 
 TEST(ReadCharts, ACoarseGridThatIsMostlyEmptyCountsAgainstTheLimit) {
-    // Long boxes this way and that: at level 1 every one begins a shelf of its own.
+    // Wide boxes beside tall ones: at level 1 each begins a shelf of its own.
     test::RawTable table;
     table.box_bits = 15;
     table.sizes = {{4, 2}, {4, 2}};

@@ -48,7 +48,7 @@ TEST(RangeCoder, BitsAndRawBitsComeBackWhateverFollows) {
 }
 
 TEST(RangeCoder, LongRunsOfTheLikelyBitAndCarriesSurvive) {
-    // The unlikely bit again and again drives low to the top of its range: carries run through many bytes.
+    // The unlikely bit, repeated, drives low to the top of its range. Carries then run through many bytes.
     for (const uint32_t period : {1u, 2u, 3u, 17u, 1000u}) {
         RangeEncoder encoder;
         BitModel w, r;
@@ -74,7 +74,7 @@ TEST(RangeCoder, StreamsEndWithTheirLastNeededByte) {
             bits -= std::log2(std::abs(bit - model.zero_probability() / 65536.0));
             encoder.code_bit(model, bit);
         }
-        // Below one byte more than the information, which is rounded up to a whole one.
+        // Less than one byte more than the information, rounded up to whole bytes.
         EXPECT_LT(static_cast<double>(encoder.finish().size()), bits / 8 + 2);
     }
 }

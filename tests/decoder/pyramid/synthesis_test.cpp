@@ -12,7 +12,7 @@ namespace {
 
 using test::Random;
 
-// The bands that lead to a rectangle, all zero.
+// The bands that make a rectangle, all zero.
 struct Bands {
     std::vector<int32_t> values;
     LevelBands level;
@@ -56,7 +56,7 @@ TEST(Synthesis, ZeroDetailsAreTheSameWithAndWithoutFrames) {
     }
 }
 
-// In a plane a first value moves samples along the normal alone, the others within the plane alone.
+// On a flat image a first value moves samples along the normal only, the others within the surface only.
 TEST(Synthesis, FirstValueIsAlongTheNormalAndTheOthersAreNot) {
     const std::vector<float> low = plane(17, 17, {3, 4, 0}, {-4, 3, 0});
     const std::vector<float> flat = synthesized(33, 33, low, Bands(33, 33), kFramed);
@@ -74,7 +74,7 @@ TEST(Synthesis, FirstValueIsAlongTheNormalAndTheOthersAreNot) {
     }
 }
 
-// Where a frame's axes are z, x, y, framed values are those without frames, put in order and with their own steps.
+// If a frame's axes are z, x, y, framed values are reordered unframed ones with steps of their own.
 TEST(Synthesis, FramesTurnDetailsAndScaleTheirSteps) {
     const std::vector<float> low = plane(17, 17, {5, 0, 0}, {0, 5, 0});  // cells of 25 units^2: scale (400 / 25)^(1/4)
     const DetailSteps steps{4, 3, true, 2.5f, 400};

@@ -22,7 +22,7 @@ struct Counts {
     uint32_t loops = 0;
 };
 
-// What the schema says: the polygon's classes, edges and one face; boundary loops by following open paths.
+// The topology of the schema: the polygon's classes, edges and one face. Boundary loops follow open paths.
 Counts of_schema(const SeamTable& t) {
     Counts c;
     const uint32_t n = t.path_count;
@@ -47,7 +47,7 @@ Counts of_schema(const SeamTable& t) {
 std::vector<float> random_samples(Random& random, uint32_t side, const std::vector<uint32_t>& class_of) {
     std::vector<float> x(size_t{side} * side * 3);
     for (float& v : x) v = random.unit();
-    // Coarse values now and then, so that ties of the diagonals happen.
+    // Values are coarse now and then, so that diagonals tie.
     if (random.below(2) == 0) {
         for (float& v : x) v = static_cast<float>(static_cast<int>(v * 2.5f));
     }
@@ -62,7 +62,7 @@ std::vector<float> random_samples(Random& random, uint32_t side, const std::vect
     return x;
 }
 
-// Empty when the indexed mesh is a connected oriented 2-manifold with these counts.
+// Returns an empty text if the indexed mesh is a connected oriented 2-manifold with these counts.
 std::string manifold_complaint(const std::vector<uint32_t>& triangles, uint32_t vertex_count, const Counts& expected) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> next_of;  // directed edge -> opposite vertex
     for (size_t f = 0; f < triangles.size(); f += 3) {
@@ -83,7 +83,7 @@ std::string manifold_complaint(const std::vector<uint32_t>& triangles, uint32_t 
             if (!boundary_next.emplace(e.first, e.second).second) return "two boundary edges leave a vertex";
         }
     }
-    // Each vertex's link is one path or one cycle: walking around from one edge meets all its edges.
+    // Each vertex's link is one path or one cycle, so a walk from one edge meets all its edges.
     std::vector<uint32_t> degree(vertex_count);
     std::vector<std::pair<uint32_t, uint32_t>> some(vertex_count);
     for (const auto& [e, c] : next_of) {
@@ -92,7 +92,7 @@ std::string manifold_complaint(const std::vector<uint32_t>& triangles, uint32_t 
     }
     for (uint32_t v = 0; v < vertex_count; ++v) {
         if (degree[v] == 0) return "vertex without faces";
-        // a: next neighbour counter-clockwise; go back first to the start of a path.
+        // a: next neighbour counter-clockwise. Goes back to the start of a path first.
         const auto ccw = [&](uint32_t a) { return next_of.at({v, a}); };
         uint32_t start = some[v].second, count = 0;
         for (uint32_t steps = 0; steps <= degree[v]; ++steps) {
@@ -171,7 +171,7 @@ TEST(Triangulate, EveryClosedLevelOfRandomSchemasIsAManifoldOfItsTopology) {
     EXPECT_GT(tight, 200u);
 }
 
-// level_is_closed must not be much stricter than needed: what it refuses is not a manifold for some positions.
+// level_is_closed must not be much stricter than needed: a level that it refuses is no manifold for some positions.
 TEST(Triangulate, RefusedLevelsAreNotManifoldForSomePositions) {
     Random random(2);
     uint32_t refused = 0, excused = 0;
@@ -202,7 +202,7 @@ TEST(Triangulate, OpenSquareHasOneLoopAtEverySide) {
 }
 
 TEST(Triangulate, LeafDoesNotDoubleAnEdge) {
-    // Both cells beside the leaf would like the diagonals that lead from the two (equal) samples next to it.
+    // Both cells beside the leaf would prefer the diagonals that lead from the two (equal) samples next to it.
     const Sideband s = {9, 4, {{1, 16}, {0, 16}}};
     SeamTable table;
     ASSERT_EQ(build_seam_table(s, &table), Status::kOk);

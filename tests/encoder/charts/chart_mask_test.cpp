@@ -121,7 +121,7 @@ TEST(ChartMask, RemovableSamplesLeaveADisk) {
 }
 
 TEST(ChartMask, NarrowInletIsReportedNotHidden) {
-    // A ring with a slit far narrower than a sample: its discrete chart is an annulus, however it is turned.
+    // A ring with a slit far narrower than a sample. Its discrete chart is an annulus in any pose.
     std::vector<Vec2> ring;
     for (int i = 0; i <= 60; ++i) ring.push_back(Vec2(std::cos(i * 0.1047), std::sin(i * 0.1047)));
     for (int i = 60; i >= 0; --i) ring.push_back(0.6 * Vec2(std::cos(i * 0.1047), std::sin(i * 0.1047)));

@@ -93,7 +93,7 @@ TEST(ChartParametrize, ImportantFacesGetMoreRoom) {
 }
 
 TEST(ChartParametrize, RibbonThatWouldOverlapIsKeptApart) {
-    // A spiral ramp of two and a half turns: flattened freely, its turns lie on top of each other.
+    // A spiral ramp of two and a half turns. If it is flattened freely, its turns overlap.
     Mesh mesh;
     constexpr uint32_t kSteps = 120;
     for (uint32_t i = 0; i <= kSteps; ++i) {

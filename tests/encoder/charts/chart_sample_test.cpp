@@ -32,7 +32,7 @@ TEST(ChartSample, NeighboursInTheImageAreNeighboursOnTheSurface) {
     for (const NamedMesh& m : surfaces()) {
         const PackedCharts p = packed_charts(m.mesh, 6, 8000);
         const MultiChartImage& image = p.image;
-        // Of a map of bounded stretch; the mean leaves room for a few worse places.
+        // The map has bounded stretch. The mean leaves room for a few worse places.
         double sum = 0;
         size_t count = 0;
         for (uint32_t row = 0; row < image.height(); ++row) {

@@ -11,8 +11,8 @@
 namespace gim {
 namespace {
 
-// A sector of a disk, radius 1, of that opening angle, as a fan of thin triangles; its surface is bent about its axis
-// until the two straight sides are `bend` radians apart.
+// A sector of a disk of radius 1 with that opening angle, as a fan of thin triangles. Its surface is bent about its
+// axis until the two straight sides are `bend` radians apart.
 Atlas sector(double opening, double bend) {
     constexpr uint32_t kRays = 60, kRings = 20;
     Atlas atlas;

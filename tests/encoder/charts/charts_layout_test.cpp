@@ -123,7 +123,7 @@ TEST(EncodeCharts, TooFewSamplesAreRefusedWithWords) {
 TEST(EncodeCharts, AFitBringsTheSurfaceNearer) {
     const TriangleMesh mesh = corpus::corpus().named("tori-2").mesh();
     EncodeOptions options = chart_options(4000);
-    options.rate = {RateTarget::Kind::kLossless, 0};  // or what quantizers do to so few samples hides it
+    options.rate = {RateTarget::Kind::kLossless, 0};  // with so few samples, quantizers would hide it
     const auto plain = encode(mesh, options);
     options.fit = FitStrength::kLoose;
     const auto fitted = encode(mesh, options);

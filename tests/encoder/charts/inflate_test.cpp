@@ -76,7 +76,7 @@ TEST(Inflate, MapsStayUprightAndSimpleAndUnderTheirMasks) {
         std::vector<Vec2> border;
         for (const uint32_t v : charts[c].loop) border.push_back(uv[v]);
         EXPECT_FALSE(find_crossing(border));
-        // Where the map is, the mask is: within a sample and a half, as tips may be cut.
+        // The mask covers the map within a sample and a half, because tips may be cut.
         const PlacedChart& placed = after.packing.charts[c];
         for (const Vec2& p : border) {
             const Vec2 q = placed.chart.pose(p) - Vec2(placed.column, placed.row);

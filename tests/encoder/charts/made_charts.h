@@ -1,5 +1,5 @@
-// Small multi-chart images made by hand, of whole numbers, as the file writer gets them: charts of any outline that are zipped
-// together path by path, at several levels.
+// Small multi-chart images made by hand from integers, as the file writer gets them: charts of any outline, zipped path
+// by path, at several levels.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ namespace gim::test {
 struct MadeChart {
     uint32_t columns = 3, rows = 3;                                 // of the box
     int32_t atlas_column = 0, atlas_row = 0;                        // of its first sample in the rectangle
-    uint32_t path_count = 1;                                        // parts of the border about equally long
+    uint32_t path_count = 1;                                        // the border is cut into so many about equal paths
     std::function<bool(uint32_t column, uint32_t row)> is_defined;  // at full resolution
     std::function<Vec3(uint32_t column, uint32_t row)> position;    // of the first of glued samples
 };
 
-// One level: the charts beside each other in one image, zipped, and where they lie in it.
+// One level: the charts beside each other in one image, zipped, and their places in it.
 struct MadeLevel {
     MultiChartImage image;
     std::vector<uint32_t> first_column;
     std::vector<std::vector<uint32_t>> loops;  // as LevelBorders has them
 };
 
-// Both paths at an even pace.
+// Walks along both paths at an even pace.
 inline std::vector<ZipStep> even_zipper(int64_t first, int64_t second) {
     std::vector<ZipStep> steps;
     for (int64_t a = first, b = second; a > 0 || b > 0;) {
@@ -96,7 +96,7 @@ inline TopologySummary topology_of(const GeometryImage& image) {
     return analyse_topology(mesh.triangles, mesh.positions.size()).summary;
 }
 
-// Positions and masks of the boxes; all samples of a point have the position of its first.
+// Positions and masks of the boxes. All samples of a point have the position of its first sample.
 inline void take_samples(const std::vector<MadeChart>& charts, const MadeLevel& made,
                          const std::vector<uint32_t>& point, ChartLevels* images) {
     std::vector<Vec3> all(point.size(), Vec3::Zero());
@@ -119,11 +119,11 @@ inline void take_samples(const std::vector<MadeChart>& charts, const MadeLevel& 
     });
 }
 
-// mates: per path, chart after chart. Topology is the caller's to ask for.
+// mates: per path, chart after chart. The caller chooses the topology.
 inline ChartLevels made_images(uint32_t width, uint32_t height, const std::vector<MadeChart>& charts,
                                const std::vector<uint32_t>& mates, uint32_t level_count) {
     ChartLevels images;
-    images.image.mask.width = width;  // the writer asks for no more of it
+    images.image.mask.width = width;  // the writer needs no more of it
     images.image.mask.height = height;
     images.mates = mates;
     for (const MadeChart& chart : charts)
@@ -143,7 +143,7 @@ inline ChartLevels made_images(uint32_t width, uint32_t height, const std::vecto
     return images;
 }
 
-// ---- surfaces --------------------------------------------------------------------------------------------------------
+// ---- surfaces -------------------------------------------------------------------------------------------------------
 
 // A rectangle, all of which is defined.
 inline MadeChart rectangle_chart(uint32_t columns, uint32_t rows, uint32_t path_count) {
@@ -176,7 +176,7 @@ inline MadeChart disk_chart(uint32_t radius, uint32_t room, uint32_t path_count,
     return chart;
 }
 
-// Two disks, not of one size if wanted, make a sphere.
+// Two disks, of different sizes if wanted, make a sphere.
 inline ChartLevels pillow(uint32_t radius, uint32_t other_radius, uint32_t level_count) {
     std::vector<MadeChart> charts = {disk_chart(radius, 1, 3, 1), disk_chart(other_radius, 2, 3, -1)};
     charts[1].atlas_column = static_cast<int32_t>(2 * radius + 1);
@@ -185,7 +185,7 @@ inline ChartLevels pillow(uint32_t radius, uint32_t other_radius, uint32_t level
     return made_images(2 * (radius + other_radius) + 8, longer, charts, {5, 4, 3, 2, 1, 0}, level_count);
 }
 
-// A rectangle whose opposite sides are one.
+// A rectangle whose opposite sides are glued.
 inline ChartLevels torus_of_one_chart(uint32_t side, uint32_t level_count) {
     MadeChart chart = rectangle_chart(side, side, 4);
     const int half = static_cast<int>(side / 2);
@@ -199,7 +199,7 @@ inline ChartLevels torus_of_one_chart(uint32_t side, uint32_t level_count) {
     return made_images(side, side, {chart}, {2, 3, 0, 1}, level_count);
 }
 
-// Two rectangles joined along one path; the others are boundaries.
+// Two rectangles glued along one path. The other paths are boundaries.
 inline ChartLevels open_sheet(uint32_t level_count) {
     std::vector<MadeChart> charts = {rectangle_chart(10, 7, 4), rectangle_chart(6, 11, 4)};
     charts[1].atlas_column = 11;

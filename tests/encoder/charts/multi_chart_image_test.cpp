@@ -8,8 +8,8 @@
 namespace gim {
 namespace {
 
-// Two squares of 3 x 3 samples, a column apart, as the two halves of a sphere: border 8 samples each, zipped all round.
-// Image 7 x 3; the left loop is 0 1 2 9 16 15 14 7, the right one 4 5 6 13 20 19 18 11.
+// Two squares of 3 x 3 samples, a column apart: the two halves of a sphere. Each border has 8 samples, all zipped.
+// The image has 7 x 3 samples; the left loop is 0 1 2 9 16 15 14 7, the right one 4 5 6 13 20 19 18 11.
 MultiChartImage pillow() {
     MultiChartImage image;
     image.mask = {7, 3, {}};
@@ -22,8 +22,8 @@ MultiChartImage pillow() {
         const double x = column < 3 ? column : 6 - column, y = row, z = row == 1 && column == 1 ? -1 : 0;
         image.positions.emplace_back(x, y, row == 1 && column == 5 ? 1 : z);
     }
-    // Left: two paths of 4 from sample 0 to 16 and back. The right side runs the other way round, so its first path
-    // begins at sample 6, which is 0's mate, at index 2 of its loop, and is the mate of the left's second.
+    // Left: two paths of 4, from sample 0 to 16 and back. The right side runs the other way round. Its first path
+    // begins at sample 6, the mate of 0, at index 2 of its loop; it is the mate of the left side's second path.
     image.seams.loops = {{0, 2}, {6, 2}};
     image.seams.paths = {{3, 4}, {2, 4}, {1, 4}, {0, 4}};
     image.seams.zippers.assign(2, std::vector<ZipStep>(4, ZipStep::kBoth));
@@ -68,7 +68,7 @@ TEST(MultiChartImage, UnmatedPathsStayOpen) {
 
 TEST(MultiChartImage, StepsOfOneSideFlattenTriangles) {
     MultiChartImage image = pillow();
-    // The left side's second sample joins its first point, then the right side catches up.
+    // The left side's second sample joins its first point. Then the right side catches up.
     image.seams.zippers[0] = {ZipStep::kFirst, ZipStep::kSecond, ZipStep::kBoth, ZipStep::kBoth, ZipStep::kBoth};
     const TopologySummary t = topology_of(std::move(image));
     EXPECT_TRUE(t.watertight);

@@ -1,4 +1,4 @@
-// Charts packed and sampled, as the stages after the packing get them.
+// Packed and sampled charts, as the stages after packing get them.
 #pragma once
 
 #include <algorithm>

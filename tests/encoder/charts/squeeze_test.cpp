@@ -29,7 +29,7 @@ Shape star_shape(int points, double radius) {
     return shape;
 }
 
-// Samples that two charts share or that are neighbours in a row or column.
+// Samples that two charts share, or neighbours of two charts in a row or column.
 int conflicts(const std::vector<Shape>& shapes, const PieceLayout& layout) {
     std::vector<int> owner(size_t{layout.width} * layout.height, -1);
     int count = 0;

@@ -18,7 +18,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 TEST(Zipper, BorderSamplesLieOnTheCutPathsAndOthersStay) {
     for (const NamedMesh& m : surfaces()) {
-        // Now and then a packing's seams do not close; make_multi_chart_image() packs again then, and so do we.
+        // Now and then the seams of a packing do not close. Then we pack again, as make_multi_chart_image() does.
         constexpr uint64_t kMostPackings = 4;
         PackedCharts s = packed_charts(m.mesh, 6, 8000);
         auto zipped = zip(s.image, s.atlas.charts, s.atlas.maps, s.packing);

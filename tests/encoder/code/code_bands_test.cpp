@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kSide = 129;
 
-// A sheet with waves, more of them on one side; nothing is glued, so that decoders fuse nothing.
+// A wavy sheet, wavier on one side. Nothing is glued, so decoders fuse nothing.
 SquareImage waves() {
     return image_of(kSide, open_sideband(), [](double u, double v) {
         return Vec3(u + 0.1 * u * u, v + 0.05 * std::sin(5 * u), 0.1 * std::sin(17 * u * u) * std::cos(9 * v));
@@ -67,7 +67,7 @@ TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
             const std::vector<float> decoded = decoded_units(writer.write(quantizer));
             const float middle = static_cast<float>(1 << (header.bits - 1));
             ASSERT_EQ(expected.size(), decoded.size());
-            // A decoder's values are rounded around 2^(bits-1), not 0, which turns frames by some 1e-5.
+            // A decoder rounds values around 2^(bits-1), not 0. That turns frames by some 1e-5.
             for (size_t i = 0; i < decoded.size(); ++i)
                 ASSERT_NEAR(expected[i] + middle, decoded[i], 0.02f) << quantizer;
         }
@@ -117,7 +117,7 @@ TEST(CodeBands, WiderTangentialStepsKeepLessOfTheTangentialDetail) {
 }
 
 TEST(CodeBands, CellAreaIsTheMeanOfTheCells) {
-    // Cells of 3 x 2 object units, and 1 x 2 where the mask leaves them out.
+    // Cells of 3 x 2 object units; 1 x 2 where the mask leaves them out.
     std::vector<Vec3> positions;
     std::vector<uint8_t> defined;
     for (uint32_t row = 0; row < 5; ++row) {

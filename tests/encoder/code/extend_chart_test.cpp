@@ -26,7 +26,7 @@ std::vector<float> slope() {
     }
     return values;
 }
-// What lies in an ellipse.
+// The samples that lie in an ellipse.
 std::vector<uint8_t> ellipse() {
     std::vector<uint8_t> defined;
     for (uint32_t r = 0; r < kRows; ++r) {

@@ -13,7 +13,7 @@ namespace {
 
 using test::Random;
 
-// Undoes all levels. Bands are given as integers to synthesize; steps say what one is worth.
+// Undoes all levels. bands: integers, as synthesize takes them. steps: what one unit is worth.
 template <class Wavelet>
 std::vector<typename Wavelet::Sample> synthesize_all(Pyramid<int32_t> bands, const std::vector<DetailSteps>& steps,
                                                      std::vector<typename Wavelet::Sample> image,
@@ -96,7 +96,6 @@ TEST(Irreversible97, FineStepsGiveTheImageBack) {
     const Pyramid<float> real = analyse<Irreversible97>(image, side);
     const auto to_integers = [&](const std::vector<float>& values) {
         std::vector<int32_t> q;
-        // dequantize() adds its shift, so take it off where the magnitude allows.
         for (const float v : values) q.push_back(static_cast<int32_t>(std::lround(v / step)));
         return q;
     };
@@ -131,7 +130,7 @@ TEST(SharedRim, ImagesComeBackAndTheDecodersInverseIsTheSame) {
         const Pyramid<float> bands = analyse<Irreversible97>(image, side, &seams);
         const std::vector<float> back = restore<Irreversible97>(bands, &seams);
         for (size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(back[i], image[i], 2e-3f);
-        // Without details: what makes an image from the base alone.
+        // Without details: the image that the base alone makes.
         Pyramid<float> smooth = bands;
         Pyramid<int32_t> none;
         none.columns = none.rows = side;
@@ -171,7 +170,7 @@ TEST(SharedRim, LinearImagesHaveNoDetailsAndCutNodesKeepTheirValues) {
     }
 }
 
-// What makes coding them once right.
+// This is why coding them once is right.
 TEST(SharedRim, BothSidesOfACutPathHaveTheSameDetails) {
     Random random(10);
     const uint32_t side = 65;

@@ -31,7 +31,7 @@ std::vector<float> noise(size_t count, uint64_t seed) {
     return values;
 }
 
-// Of the torus: opposite sides are glued.
+// The gluing of the torus: opposite sides are one.
 SeamTable torus_seams() {
     SeamTable seams;
     EXPECT_EQ(build_seam_table(torus_image(kSide, 700, 300).sideband, &seams), Status::kOk);
@@ -123,7 +123,7 @@ TEST(DetailBasis, StepsFollowBandComponentAndArea) {
         ASSERT_EQ(DetailBasis::is_tangential(i), tangential);
         ASSERT_FLOAT_EQ(without_area.step(i) * without_area.norm(i), tangential ? 24 : 8);
         ASSERT_EQ(without_area.relative_area(i), 1.0f);
-        // The fourth root of the area takes off of normal steps what the area is greater.
+        // Normal steps are divided by the fourth root of the ratio of areas.
         const float scale = basis.step(i) / without_area.step(i);
         if (tangential) {
             ASSERT_EQ(scale, 1.0f);
@@ -131,7 +131,7 @@ TEST(DetailBasis, StepsFollowBandComponentAndArea) {
         }
         ASSERT_NEAR(std::pow(scale, 4.0f) * basis.relative_area(i), 1, 1e-4f);
     }
-    // Outer cells of the torus are larger than inner ones; the mean is about as in the coding.
+    // Outer cells of the torus are larger than inner ones. Their mean is about that of the coding.
     float least = 1, most = 1;
     for (size_t i = 0; i < basis.size(); ++i) {
         least = std::min(least, basis.relative_area(i));
@@ -141,7 +141,7 @@ TEST(DetailBasis, StepsFollowBandComponentAndArea) {
     EXPECT_GT(most, 1.2f);
 }
 
-// Moving all samples of a plane along its normal changes normal coordinates only.
+// If all samples of a flat image move along its normal, only normal coordinates change.
 TEST(DetailBasis, FirstComponentIsAlongTheNormal) {
     std::vector<float> plane;
     for (uint32_t row = 0; row < kSide; ++row) {

@@ -74,12 +74,12 @@ TEST(FitCoded, ThreadsAndRepetitionChangeNothing) {
     EXPECT_EQ(results[0], results[2]);
 }
 
-// Its steps fold nothing over; the quantizer, whose image it ends with, does here and there.
+// The steps of the fit fold nothing over. The quantizer, which makes the final image, does here and there.
 TEST(FitCoded, HardlyAnythingFoldsThatWasNotFoldedBefore) {
     const Mesh reference = bumpy_torus();
     const SquareImage start = image_on(reference);
     const uint64_t before = measure_fit(start, reference).value().folds;
-    // Single fits are up to 20 off, whatever the codec: finer ones find creases. The mean tells more.
+    // Single fits are up to 20 off with any codec, because finer ones find creases. The mean tells more.
     uint64_t sum = 0;
     for (const double quantizer : {4.0, 8.0, 16.0, 64.0}) {
         const SquareImage image = fitted(start, reference, units_for(start, quantizer));

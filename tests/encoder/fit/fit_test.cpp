@@ -134,7 +134,7 @@ TEST(Fit, LooseSamplesFindTheCrease) {
     EXPECT_GT(decibels(loose.value().after.to_image, stiff.value().after.to_image), 3);
 }
 
-// Rows squeezed together in pairs, with samples of a pair exchanged: slivers that lie in the surface upside down.
+// Rows are squeezed together in pairs whose samples are exchanged: slivers that lie in the surface upside down.
 TEST(Fit, SqueezedRowsThatCrossAreUnfolded) {
     const Mesh reference = bumpy_torus();
     SquareImage start = image_on(reference, 65);

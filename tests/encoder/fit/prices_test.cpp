@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kSide = 65;
 
-// A torus in units whose cells differ in area by more than an order of magnitude: rows crowd on its inner side.
+// A torus in units. Rows crowd on its inner side, so cells differ in area by more than an order of magnitude.
 SquareImage crowded_torus() {
     return image_of(kSide, {}, [](double u, double v) {
         const double turn = 2 * std::numbers::pi, a = turn * u, b = turn * v - 0.8 * std::sin(turn * v);
@@ -22,7 +22,7 @@ SquareImage crowded_torus() {
     });
 }
 
-// Per sample, a quarter of the area of the cells around it.
+// A quarter of the area of the cells around each sample.
 std::vector<double> areas_at(const SquareImage& image) {
     std::vector<double> areas(image.positions.size(), 0.0);
     for (uint32_t row = 0; row + 1 < kSide; ++row) {
@@ -36,8 +36,8 @@ std::vector<double> areas_at(const SquareImage& image) {
     return areas;
 }
 
-// Distances are sampled by area on both surfaces: what a move of the samples costs is twice the sum of its squares, each
-// times the sample's area over the mean. The fit scales by that, or it would go on for long where cells are large.
+// Distances are sampled by area on both surfaces. So a move of samples costs twice the sum of squares, each weighted by
+// the sample's area over the mean area. Without that scale the fit would take long where cells are large.
 TEST(Prices, ScaleIsTheCurvatureOfTheDistances) {
     const SquareImage image = crowded_torus();
     const std::vector<double> areas = areas_at(image);

@@ -57,7 +57,7 @@ Problem random_problem(uint32_t width, uint32_t height) {
     return problem;
 }
 
-// The same by elimination, with the classes' rows and columns added up.
+// Solves the same by elimination, with the rows and columns of each class added up.
 std::vector<Vec3> solve_densely(const Problem& problem, const GridGluing& gluing, const std::vector<bool>& fixed) {
     const auto n = static_cast<Eigen::Index>(problem.right.size());
     Eigen::MatrixXd glue = Eigen::MatrixXd::Zero(3 * n, 3 * n);

@@ -48,7 +48,7 @@ TEST(Density, ChartsGrowWhereTheSurfaceNeedsSamples) {
     const auto importance = adapt_charts(mesh, 2000, kChartDensity, {}, adapted);
     ASSERT_TRUE(importance.ok()) << importance.error().message;
     ASSERT_EQ(importance.value().size(), mesh.triangles.size());
-    // Share of the image per share of the surface, in the wavy half and in the other.
+    // Share of the image / share of the surface, in the wavy half and in the other.
     std::array<double, 2> before{}, after{};
     for (size_t c = 0; c < even.charts.size(); ++c) {
         for (size_t f = 0; f < even.charts[c].source_face.size(); ++f) {

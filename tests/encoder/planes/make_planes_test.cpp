@@ -21,7 +21,7 @@ struct Decoded {
     uint32_t side = 0, plane_side = 0;
     std::vector<float> grid, values;
 
-    // Position of the decoded image at a texel, bilinear.
+    // The bilinear position of the decoded image at a texel.
     Vec3 position(uint32_t row, uint32_t column) const {
         const double y = double(row) * (side - 1) / (plane_side - 1),
                      x = double(column) * (side - 1) / (plane_side - 1);
@@ -120,7 +120,7 @@ TEST(MakePlanes, VertexColorsComeBack) {
     EXPECT_GT(-10 * std::log10(sum / (double(d.plane_side) * d.plane_side)), 38);
 }
 
-// A texture laid over the sphere by latitude and longitude, so that it has a seam.
+// A texture over the sphere by latitude and longitude, which has a seam.
 TriangleMesh textured_sphere() {
     TriangleMesh mesh = corpus::sphere(16);
     TextureImage image{64, 32, {}};
@@ -204,7 +204,7 @@ TEST(MakePlanes, InconsistentColorsAreRefused) {
     EXPECT_FALSE(encode(mesh, small_options()).ok());
 }
 
-// ---- parts -----------------------------------------------------------------------------------------------------------
+// ---- parts ----------------------------------------------------------------------------------------------------------
 
 Mesh cleaned(const TriangleMesh& mesh) {
     auto result = clean(mesh);
@@ -234,7 +234,7 @@ TEST(SamplePlanes, NormalsAreSharpOverCreasesAndSmoothElsewhere) {
 }
 
 TEST(SamplePlanes, AThinSheetDoesNotShowItsOtherSide) {
-    // A flat open image just below the upper side of a thin plate: the lower side is nearer.
+    // A flat open image just below the upper side of a thin plate, so that the lower side is nearer.
     const Mesh plate = cleaned(corpus::box(4, 0.01, 1));
     double top = -1e9, bottom = 1e9, left = 1e9, right = -1e9, near = 1e9, far = -1e9;
     for (const Vec3& p : plate.positions) {

@@ -73,7 +73,7 @@ TEST(Cut, HalvesOfACutEdgeAreMarkedAlike) {
 TEST(FindCut, OpensEverySurfaceIntoADisk) {
     for (const NamedMesh& m : connected_meshes()) {
         const Topology topology = build_topology(m.mesh);
-        // Well below the meshes: the cut must survive the way back to the full mesh.
+        // Far fewer faces than the meshes have: the cut must survive the way back to the full mesh.
         const auto found = find_cut(m.mesh, topology, coarsen(m.mesh, 300), {});
         ASSERT_TRUE(found.ok()) << m.name << ": " << found.error().message;
         EXPECT_TRUE(opens_to_disk(m.mesh, topology, found.value().cut)) << m.name;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// A sphere folded out of the square: the ring is glued to itself along a straight cut from ring sample a to its antipode.
-// The square's inner squares become circles of latitude-like loops that close around the cut.
+// A sphere folded out of the square. The ring is glued to itself along a straight cut from ring sample a to its
+// antipode. The square's inner squares become loops like circles of latitude that close around the cut.
 SquareGrid folded_sphere(uint32_t side, uint32_t leaf) {
     SquareGrid image;
     image.side = side;
@@ -31,7 +31,7 @@ SquareGrid folded_sphere(uint32_t side, uint32_t leaf) {
             // Ring position as an angle from the leaf, and how far towards the centre of the square.
             const double angle = 2 * kPi * (double(k) / count - double(leaf) / ring_length(side));
             const double inwards = 2 * depth / last;
-            // The loop at `inwards` is a plane curve that opens from the doubled arc (rim) to a point (centre).
+            // The loop at `inwards` is a flat curve that goes from the doubled arc (rim) to a point (centre).
             const double tilt = kPi / 2 * (1 + std::cos(angle)) / 2 * (1 - inwards) * 2 - kPi / 2 * (1 - inwards);
             const double swing = std::sin(angle) * kPi / 2 * std::sin(kPi * inwards);
             Vec3 x(std::sin(tilt) * std::cos(swing), std::sin(swing), std::cos(tilt) * std::cos(swing));

@@ -60,7 +60,7 @@ TEST(OpenMesh, CutThatLeavesAnAnnulusIsRefused) {
     const Mesh mesh = clean(corpus::torus(20, 10, 1, 0.4)).value().mesh;
     const Topology topology = build_topology(mesh);
     CutEdges cut = initial_cut(mesh, topology, 0);
-    // Take one whole cut-path away: what is left opens the torus into an annulus.
+    // Removes one whole cut-path. The rest opens the torus into an annulus.
     const std::vector<uint32_t> valence = cut_valence(mesh, topology, cut);
     uint32_t h = 0;
     while (!cut[h] || valence[from(mesh, h)] == 2) ++h;

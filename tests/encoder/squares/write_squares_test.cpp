@@ -105,7 +105,7 @@ TEST(WriteSquares, FinerQuantizersComeCloserAndTakeMore) {
                 error += std::pow(double{d.positions[i * 3 + size_t(k)]} - image.positions[i][k], 2);
         EXPECT_LT(error, last_error);
         EXPECT_GT(bytes.size(), last_size);
-        // The steps of coefficients of unit norm, one along the normal and two along the surface, bound the error of each.
+        // The steps of unit-norm coefficients, one along the normal and two along the surface, bound the error of each.
         const double steps = quantizer * std::sqrt((1 + 2 * kTangentialRatio * kTangentialRatio) / 3);
         EXPECT_LT(std::sqrt(error / double(image.positions.size())), steps * double{d.info.step});
         last_error = error;
@@ -168,7 +168,7 @@ TEST(WriteSquares, CoarserLevelsAreUsableImages) {
     }
 }
 
-// Cut-nodes on a grid of 9 x 9: smaller images cannot be closed, and only cost bytes.
+// Cut-nodes on a grid of 9 x 9. Smaller images cannot be closed and would only cost bytes.
 TEST(WriteSquares, LevelsThatNoImageCanCloseAreLeftOut) {
     CodingParameters parameters;
     parameters.base_side = 3;

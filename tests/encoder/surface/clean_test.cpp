@@ -63,7 +63,7 @@ TEST(Clean, SoupWithCollapsedAndDoubleTrianglesComesBackWhole) {
 }
 
 TEST(Clean, SheetsThatOnlyTouchStayApart) {
-    // Two cubes that share the place of one edge, as soup: an exact weld would give that edge four faces.
+    // A soup of two cubes that touch along an edge: an exact weld would give that edge four faces.
     TriangleMesh second = corpus::box(1, 1, 1);
     for (auto& p : second.positions) p = {p[0] + 2, p[1] + 2, p[2]};
     const TriangleMesh both = corpus::soup(corpus::together({corpus::box(1, 1, 1), second}, 0));
@@ -74,8 +74,7 @@ TEST(Clean, SheetsThatOnlyTouchStayApart) {
 }
 
 TEST(Clean, PartsThatTouchInAPointAreNotWelded) {
-    // Four quarters around an axis, joined below: their upper edges along the axis lie on each other, four at one
-    // place.
+    // Four quarters around an axis, joined below. Their four upper edges along the axis lie at one place.
     const auto input = load_model("teapot.ply");
     if (!input) GTEST_SKIP() << "no development models in " << GIM_MODELS_DIR;
     const auto result = clean(*input, {.require_connected = false});

@@ -16,7 +16,7 @@ Vec3 point_in_cube(std::mt19937_64& engine) {
     return {2 * unit(engine) - 1, 2 * unit(engine) - 1, 2 * unit(engine) - 1};
 }
 
-// Small triangles anywhere in the cube, some with no area.
+// Small triangles anywhere in the cube, some without area.
 Mesh random_soup(uint32_t count, uint64_t seed) {
     std::mt19937_64 engine(seed);
     Mesh mesh;
@@ -121,7 +121,7 @@ TEST(ClosestPointTree, HintsAndThreadsChangeNothing) {
 }
 
 TEST(ClosestPointTree, EquallyNearTrianglesGiveTheSmallestIndex) {
-    // A fan around the origin, listed so that the tree's order is not the mesh's, and twice.
+    // A fan around the origin, listed twice and in an order that differs from the tree's.
     Mesh mesh;
     mesh.positions.push_back(Vec3::Zero());
     for (int i = 0; i < 12; ++i) mesh.positions.emplace_back(std::cos(i * 0.5), std::sin(i * 0.5), 0);
@@ -147,8 +147,8 @@ TEST(ClosestPointTree, FarOffsetsAndExtremeScalesKeepTheirDigits) {
 }
 
 TEST(ClosestPointTree, QueriesFarAwayFindTheirPointAndOpenFewBoxes) {
-    // Far away all boxes are at the same distance but for the last digits: without care every triangle is visited, and
-    // this many queries never end.
+    // From far away all boxes are at the same distance up to the last digits. Without care every triangle is visited,
+    // and this many queries never end.
     const Mesh mesh = random_soup(100000, 12);
     const ClosestPointTree tree(mesh);
     std::mt19937_64 engine(13);

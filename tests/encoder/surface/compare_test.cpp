@@ -56,7 +56,7 @@ TEST(Compare, PartOfASurfaceIsNearTheWholeButNotTheOtherWayRound) {
     EXPECT_EQ(result.value().rms, result.value().rms_to_test);
 }
 
-// Ground of area 4 and a fin of area 2 and height 1 upright on it: 2/6 of the area has the mean square height 1/3.
+// Ground of area 4 with an upright fin of area 2 and height 1: 2/6 of the area has mean square height 1/3.
 TEST(Compare, AFinCountsWhicheverSurfaceHasIt) {
     const TriangleMesh ground = square(6);
     TriangleMesh with_fin = ground;
@@ -156,8 +156,8 @@ TEST(Compare, NormalsOfTwoPlanesDifferByTheirAngle) {
 }
 
 TEST(Compare, NormalsOfOneWayAreTheMeanOverItsOwnArea) {
-    // A roof over the left half of the ground, 45 degrees steep, and flat ground on the right: the angle is 45 degrees on
-    // sqrt(2) of 1 + sqrt(2) of its area. Nothing is shared at the ridge, so its normals do not blend.
+    // A roof of 45 degrees over the left half of the ground, flat ground on the right. The angle is 45 degrees on
+    // sqrt(2) of 1 + sqrt(2) of its area. The ridge shares no vertices, so its normals do not blend.
     const TriangleMesh roof{{{-1, 0, 0}, {0, 0, 1}, {0, 2, 1}, {-1, 2, 0}, {0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}},
                             {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
     const TriangleMesh ground{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}};

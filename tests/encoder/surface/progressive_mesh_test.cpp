@@ -35,7 +35,7 @@ TEST(ProgressiveMesh, SplittingEverythingGivesTheInputBack) {
 }
 
 TEST(ProgressiveMesh, NoCollapseJoinsTwoVerticesOfOneSide) {
-    // A flat fan: four boundary vertices around one interior vertex; the boundary all on one side of the square.
+    // A flat fan: four boundary vertices around one interior vertex. The boundary is all on one side of the square.
     const Mesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)},
                     {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}};
     ProgressiveMesh allowed(mesh), refused(mesh);

@@ -72,7 +72,7 @@ TEST(Components, ExtractingThemAllGivesTheWholeMesh) {
     EXPECT_EQ(vertices, mesh.positions.size());
 }
 
-// The figures of the models' own list, made by two other programs.
+// The figures in the models' own list, which two other programs made.
 struct ModelFigures {
     const char* name;
     uint64_t vertices, triangles, components, loops;
