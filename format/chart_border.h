@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "format/bit_model.h"
+#include "format/mate.h"
 
 namespace gim {
 
@@ -35,9 +36,9 @@ struct BorderModels {
 
 // A path at the level that is coded.
 struct BorderPath {
-    uint32_t mate = UINT32_MAX;  // number of the mated path, or UINT32_MAX
-    uint32_t length = 0;         // samples from its begin node to its end node, the begin not counted
-    uint32_t first = 0;          // index of its begin node in BorderChart::samples
+    uint32_t mate = kNoMate;  // number of the path, or kNoMate
+    uint32_t length = 0;      // samples from its begin node to its end node, the begin not counted
+    uint32_t first = 0;       // index of its begin node in BorderChart::samples
     uint32_t chart = 0;
 };
 

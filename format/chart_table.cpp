@@ -92,7 +92,7 @@ Status ChartTableReader::read_paths(uint32_t count, uint32_t* mates) {
             continue;
         }
         if (!bits_.read(1, &bit)) return Status::kMalformed;
-        if (mates) mates[path_count_] = kUnmated;
+        if (mates) mates[path_count_] = kNoMate;
         if (!bit) continue;
         if (open_count_ == open_.size()) return Status::kMalformed;
         open_[open_count_++] = static_cast<uint16_t>(path_count_);
@@ -132,7 +132,7 @@ std::vector<uint8_t> serialize_chart_table(const ChartTable& table, const Header
         write_gamma(chart.path_count, &bits);
         for (const uint32_t end = path + chart.path_count; path < end; ++path) {
             const uint32_t mate = table.mates[path];
-            if (mate == kUnmated) {
+            if (mate == kNoMate) {
                 bits.write(0, 2);
             } else if (mate > path) {
                 bits.write(1, 2);

@@ -14,6 +14,7 @@
 
 #include "format/bits.h"
 #include "format/container.h"
+#include "format/mate.h"
 #include "format/status.h"
 
 namespace gim {
@@ -21,7 +22,6 @@ namespace gim {
 inline constexpr uint32_t kMaxCharts = 8192;
 inline constexpr uint32_t kMaxChartPaths = 16384;  // of all charts; bounds the memory of a ChartTableReader (16 KiB)
 inline constexpr uint32_t kMaxChartSide = 32768;
-inline constexpr uint32_t kUnmated = UINT32_MAX;  // a path along an input boundary
 
 // How often a box can be halved until its shorter side has two samples; at most kMaxLevels.
 uint32_t halvings(uint32_t columns, uint32_t rows);
@@ -42,7 +42,7 @@ struct LevelSize {
 
 struct ChartTable {
     std::vector<ChartBox> charts;
-    std::vector<uint32_t> mates;    // per path, chart after chart: the path on the other side, or kUnmated
+    std::vector<uint32_t> mates;    // per path, chart after chart: the path on the other side, or kNoMate
     std::vector<LevelSize> levels;  // finest first
 };
 

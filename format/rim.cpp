@@ -23,7 +23,7 @@ void rim_sources(const SeamTable& seams, uint32_t side, std::span<uint32_t> sour
     for (uint32_t i = 0; i < seams.path_count; ++i) {
         const uint32_t mate = seams.mate[i], length = seams.length(i) * scale;
         source[wrap(seams.first[i] * scale)] = kRunEnd;
-        if (mate == SeamTable::kBoundary || mate < i) continue;
+        if (mate == kNoMate || mate < i) continue;
         for (uint32_t t = 1; t < length; ++t) {
             const uint32_t a = wrap(seams.first[i] * scale + t), b = wrap(seams.first[mate] * scale + length - t);
             if (is_corner(a)) source[b] = kRunEnd;

@@ -18,7 +18,7 @@ uint64_t glued_identity(const SeamTable& table, uint32_t scale, uint32_t k) {
     const uint32_t offset = position - table.first[path] * scale;
     if (offset == 0) return (uint64_t{1} << 48) | table.node_class[path];
     const uint32_t mate = table.mate[path];
-    if (mate == SeamTable::kBoundary || path < mate) return uint64_t{path} << 24 | offset;
+    if (mate == kNoMate || path < mate) return uint64_t{path} << 24 | offset;
     return uint64_t{mate} << 24 | (table.length(path) * scale - offset);
 }
 
@@ -39,7 +39,7 @@ bool has_double_unit_path(const SeamTable& table) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < table.path_count; ++i) {
         if (table.length(i) != 1) continue;
-        if (table.mate[i] != SeamTable::kBoundary && table.mate[i] < i) continue;  // counted with its mate
+        if (table.mate[i] != kNoMate && table.mate[i] < i) continue;  // counted with its mate
         const auto [low, high] = std::minmax(table.node_class[i], table.node_class[next_path(table, i)]);
         keys[count++] = uint32_t{low} << 16 | high;
     }
@@ -76,22 +76,21 @@ Status build_seam_table(uint32_t node_side, uint32_t start, std::span<const CutP
 
     // Mates are mutual.
     for (uint32_t i = 0; i < paths.size(); ++i) {
-        const int32_t mate = paths[i].mate;
+        const uint32_t mate = paths[i].mate;
         if (mate == kNoMate) {
-            table->mate[i] = SeamTable::kBoundary;
+            table->mate[i] = kNoMate;
             continue;
         }
-        if (mate < 0 || mate >= static_cast<int32_t>(paths.size()) || mate == static_cast<int32_t>(i) ||
-            paths[mate].mate != static_cast<int32_t>(i) || paths[mate].length != paths[i].length)
+        if (mate >= paths.size() || mate == i || paths[mate].mate != i || paths[mate].length != paths[i].length)
             return Status::kMalformed;
-        table->mate[i] = static_cast<uint16_t>(mate);
+        table->mate[i] = mate;
     }
 
     // A path's first node is its mate's last one, which is the first node of the path after the mate.
     auto& parent = table->node_class;
     for (uint32_t i = 0; i < table->path_count; ++i) parent[i] = static_cast<uint16_t>(i);
     for (uint32_t i = 0; i < table->path_count; ++i) {
-        if (table->mate[i] == SeamTable::kBoundary) continue;
+        if (table->mate[i] == kNoMate) continue;
         const uint16_t a = find_root(parent, static_cast<uint16_t>(i));
         const uint16_t b = find_root(parent, static_cast<uint16_t>(next_path(*table, table->mate[i])));
         parent[std::max(a, b)] = std::min(a, b);
@@ -157,7 +156,7 @@ uint32_t ring_class_count(const SeamTable& table, uint32_t side) {
     const uint32_t scale = (side - 1) / (table.node_side - 1);
     uint32_t count = table.node_class_count;
     for (uint32_t i = 0; i < table.path_count; ++i) {
-        if (table.mate[i] == SeamTable::kBoundary || i < table.mate[i]) count += table.length(i) * scale - 1;
+        if (table.mate[i] == kNoMate || i < table.mate[i]) count += table.length(i) * scale - 1;
     }
     return count;
 }
@@ -185,7 +184,7 @@ void ring_classes(const SeamTable& table, uint32_t side, std::span<uint32_t> cla
         const uint32_t mate = table.mate[i];
         for (uint32_t t = 1; t < length; ++t) {
             const uint32_t k = wrap(begin + t);
-            class_of[k] = mate == SeamTable::kBoundary ? k : std::min(k, wrap(table.first[mate] * scale + length - t));
+            class_of[k] = mate == kNoMate ? k : std::min(k, wrap(table.first[mate] * scale + length - t));
         }
     }
     // ... then the smallest ones are numbered in ring order; an equal with a smaller index has its number already.

@@ -22,16 +22,14 @@ constexpr bool is_grid_side(uint32_t side) {
     return side >= 2 && ((side - 1) & (side - 2)) == 0 && side <= (1u << kMaxSideExponent) + 1;
 }
 
-// A checked sideband in fixed memory (8 KiB), with the cut-nodes sorted into classes.
+// A checked sideband in fixed memory (10 KiB), with the cut-nodes sorted into classes.
 struct SeamTable {
-    static constexpr uint16_t kBoundary = UINT16_MAX;  // in `mate`: the path is an original boundary
-
     uint32_t node_side = 2;
     uint32_t path_count = 0;  // 0: an open square, glued nowhere
     uint32_t node_class_count = 0;
     std::array<uint32_t, kMaxCutPaths + 1> first;   // node-grid ring index of each path's first node; rises from the
                                                     // start and runs past the ring's length instead of wrapping
-    std::array<uint16_t, kMaxCutPaths> mate;        // index of the mate, or kBoundary
+    std::array<uint32_t, kMaxCutPaths> mate;        // index of the mate, or kNoMate
     std::array<uint16_t, kMaxCutPaths> node_class;  // class of each path's first node
 
     uint32_t length(uint32_t path) const { return first[path + 1] - first[path]; }

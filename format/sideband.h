@@ -10,14 +10,14 @@
 #include <cstdint>
 #include <vector>
 
-namespace gim {
+#include "format/mate.h"
 
-inline constexpr int32_t kNoMate = -1;  // a cut-path that is an original boundary of the surface
+namespace gim {
 
 // One run of ring samples between two cut-nodes, in ring order. Mates run in opposite directions (orientable surfaces).
 struct CutPath {
-    int32_t mate = kNoMate;  // index of the mate in Sideband::paths, or kNoMate
-    uint32_t length = 0;     // units of the node grid, >= 1; equal for mates
+    uint32_t mate = kNoMate;  // index of the mate in Sideband::paths, or kNoMate
+    uint32_t length = 0;      // units of the node grid, >= 1; equal for mates
 
     friend bool operator==(const CutPath&, const CutPath&) = default;
 };

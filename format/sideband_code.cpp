@@ -56,7 +56,7 @@ void append_sideband(const Sideband& sideband, std::vector<uint8_t>* bytes) {
             writer.write(1, 3);
             writer.write_up_to(path.length - 1, open.room - 1);
             open.room -= path.length;
-        } else if (path.mate > static_cast<int32_t>(i)) {
+        } else if (path.mate > i) {
             writer.write(1, 2);
             writer.write_up_to(path.length - 1, open.room / 2 - 1);
             open.room -= 2 * path.length;
@@ -101,8 +101,8 @@ Status parse_sideband(std::span<const uint8_t> bytes, std::span<CutPath> paths, 
                     ++value;
                 }
                 const uint32_t mate = open.remove(value);
-                paths[i] = {static_cast<int32_t>(mate), paths[mate].length};
-                paths[mate].mate = static_cast<int32_t>(i);
+                paths[i] = {mate, paths[mate].length};
+                paths[mate].mate = i;
             } else {
                 const uint32_t each = zeros == 1 ? 2 : 1;  // a new path needs room for its mate too
                 if (open.room < each || !reader.read_up_to(open.room / each - 1, &value)) return Status::kMalformed;

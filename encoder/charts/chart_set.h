@@ -12,15 +12,15 @@
 
 #include "encoder/charts/chartify.h"
 #include "encoder/surface/mesh.h"
+#include "format/mate.h"
 
 namespace gim {
 
 // A directed run of border edges between two cut-nodes.
 struct ChartPath {
     uint32_t first = 0;  // index into Chart::loop of its first vertex; it ends where the next path begins
-    uint32_t mate_chart = kNone, mate_path = kNone;  // the path on the other side, which runs the other way; kNone: an
-                                                     // input boundary
-    uint32_t begin_node = 0, end_node = 0;           // vertices of the surface
+    uint32_t mate_chart = kNoMate, mate_path = kNoMate;  // the path on the other side; it runs the other way
+    uint32_t begin_node = 0, end_node = 0;               // vertices of the surface
 };
 
 struct Chart {

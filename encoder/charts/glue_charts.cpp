@@ -14,7 +14,7 @@ Result<GridGluing> glue_charts(const SampleMask& mask, const SeamRecord& seams) 
     samples.defined = mask.defined;
     samples.on_input_boundary.assign(point.size(), false);
     for (size_t p = 0; p < paths.size(); ++p) {
-        if (seams.paths[p].mate != kNone) continue;
+        if (seams.paths[p].mate != kNoMate) continue;
         for (const uint32_t v : paths[p]) samples.on_input_boundary[v] = true;
     }
     samples.classes.resize(point.size());

@@ -65,7 +65,7 @@ Result<std::vector<uint32_t>> glue_samples(const SampleMask& mask, const SeamRec
     size_t zipper = 0;
     for (uint32_t p = 0; p < seams.paths.size(); ++p) {
         const uint32_t mate = seams.paths[p].mate;
-        if (mate == kNone) continue;
+        if (mate == kNoMate) continue;
         if (mate >= seams.paths.size() || mate == p || seams.paths[mate].mate != p) return misfit("one-sided mates");
         if (mate < p) continue;
         if (zipper == seams.zippers.size()) return misfit("too few zippers");

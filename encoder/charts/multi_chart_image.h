@@ -19,8 +19,8 @@
 namespace gim {
 
 struct SeamPath {
-    uint32_t mate = kNone;  // number of the path on the other side, or kNone: an input boundary
-    uint32_t length = 0;    // samples from its begin node to its end node, the begin not counted
+    uint32_t mate = kNoMate;  // number of the path on the other side, or kNoMate
+    uint32_t length = 0;      // samples from its begin node to its end node, the begin not counted
 };
 
 struct SeamRecord {

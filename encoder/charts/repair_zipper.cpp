@@ -31,7 +31,7 @@ std::vector<uint32_t> zippers_of_paths(const SeamRecord& seams) {
     uint32_t count = 0;
     for (uint32_t p = 0; p < seams.paths.size(); ++p) {
         const uint32_t mate = seams.paths[p].mate;
-        if (mate == kNone || mate < p) continue;
+        if (mate == kNoMate || mate < p) continue;
         zipper[p] = zipper[mate] = count++;
     }
     return zipper;

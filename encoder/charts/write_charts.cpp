@@ -71,7 +71,7 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
     for (size_t p = 0; p < paths.size(); ++p) paths[p] = {mates[p], borders.lengths[p], 0, 0};
     std::vector<size_t> zipper_of(mates.size(), 0);  // of the path with the lower number
     for (size_t p = 0, next = 0; p < mates.size(); ++p) {
-        if (mates[p] != kUnmated && mates[p] > p) zipper_of[p] = next++;
+        if (mates[p] != kNoMate && mates[p] > p) zipper_of[p] = next++;
     }
     BorderCoder<RangeEncoder> coder(&encoder, &models);
     uint32_t first_path = 0;

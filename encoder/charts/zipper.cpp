@@ -296,13 +296,14 @@ class Zipper {
             image_.seams.loops.push_back({samples_of(c, 0).front(), static_cast<uint32_t>(charts_[c].paths.size())});
             for (uint32_t p = 0; p < charts_[c].paths.size(); ++p) {
                 const ChartPath& path = charts_[c].paths[p];
-                const uint32_t mate = path.mate_chart == kNone ? kNone : first_path_[path.mate_chart] + path.mate_path;
+                const uint32_t mate =
+                    path.mate_chart == kNoMate ? kNoMate : first_path_[path.mate_chart] + path.mate_path;
                 image_.seams.paths.push_back({mate, static_cast<uint32_t>(samples_of(c, p).size() - 1)});
             }
         }
         zipper_of_path_.assign(count, kNone);
         for (uint32_t k = 0; k < count; ++k) {
-            if (image_.seams.paths[k].mate == kNone || image_.seams.paths[k].mate < k) continue;
+            if (image_.seams.paths[k].mate == kNoMate || image_.seams.paths[k].mate < k) continue;
             zipper_of_path_[k] = static_cast<uint32_t>(image_.seams.zippers.size());
             image_.seams.zippers.emplace_back();
         }
@@ -323,7 +324,7 @@ class Zipper {
         const Curve curve = curve_of(charts_[c], maps_[c], packing_.charts[c].chart.pose, p);
         const std::vector<uint32_t> own = samples_of(c, p);
         std::vector<double> t = parts_of(own, curve);
-        if (path.mate_chart == kNone) {
+        if (path.mate_chart == kNoMate) {
             spread(t);
             for (size_t i = 0; i < own.size(); ++i) image_.positions[own[i]] = point_at(curve, t[i]);
             return;

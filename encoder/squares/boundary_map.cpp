@@ -43,9 +43,9 @@ std::vector<PathPair> pair_paths(const OpenedMesh& opened, uint32_t least_units)
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> between;  // how many pairs of paths join these two cut-nodes
     for (uint32_t k = 0; k < opened.paths.size(); ++k) {
         const BoundaryPath& path = opened.paths[k];
-        if (path.mate >= 0 && static_cast<uint32_t>(path.mate) < k) continue;
+        if (path.mate < k) continue;
         const bool loop = path.begin_node == path.end_node;
-        pairs.push_back({k, path.mate >= 0 ? 2u : 1u, path_length(opened, k),
+        pairs.push_back({k, path.mate != kNoMate ? 2u : 1u, path_length(opened, k),
                          loop ? std::max(kLeastLoopUnits, least_units) : least_units});
         ++between[std::minmax(path.begin_node, path.end_node)];
     }
@@ -106,7 +106,7 @@ std::vector<uint32_t> leaf_offsets(const std::vector<CutPath>& paths) {
     uint32_t at = 0;
     for (size_t k = 0; k < paths.size(); ++k) {
         at += paths[k].length;
-        if (paths[k].mate == static_cast<int32_t>((k + 1) % paths.size())) leaves.push_back(at);
+        if (paths[k].mate == (k + 1) % paths.size()) leaves.push_back(at);
     }
     return leaves;
 }
@@ -148,9 +148,9 @@ Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& opt
         if (excess(pairs, total) > options.most_excess && pairs.size() > 1 && node_side < options.side) continue;
         Sideband sideband{node_side, 0, std::vector<CutPath>(opened.paths.size())};
         for (const PathPair& p : pairs) {
-            const int32_t mate = opened.paths[p.path].mate;
+            const uint32_t mate = opened.paths[p.path].mate;
             sideband.paths[p.path] = {mate, p.units};
-            if (mate >= 0) sideband.paths[static_cast<size_t>(mate)] = {static_cast<int32_t>(p.path), p.units};
+            if (mate != kNoMate) sideband.paths[mate] = {p.path, p.units};
         }
         if (choose_start(sideband)) return sideband;
     }
@@ -178,8 +178,8 @@ class BoundaryLayout {
                 double offset = std::fmod(p - begin_of(k) + total, total);
                 if (offset <= 0 || offset >= length_of(k)) continue;
                 offset = put_vertex(k, offset);
-                const int32_t mate = sideband_.paths[k].mate;
-                if (mate >= 0) put_vertex(static_cast<size_t>(mate), length_of(k) - offset);
+                const uint32_t mate = sideband_.paths[k].mate;
+                if (mate != kNoMate) put_vertex(mate, length_of(k) - offset);
                 break;
             }
         }
@@ -233,9 +233,9 @@ class BoundaryLayout {
         }
         // Mates get the same offsets, mirrored bit for bit.
         for (size_t k = 0; k < runs_.size(); ++k) {
-            const int32_t mate = opened_.paths[k].mate;
-            if (mate < 0 || static_cast<size_t>(mate) < k) continue;
-            std::vector<Placed>& other = runs_[static_cast<size_t>(mate)];
+            const uint32_t mate = opened_.paths[k].mate;
+            if (mate == kNoMate || mate < k) continue;
+            std::vector<Placed>& other = runs_[mate];
             for (size_t i = 1; i < other.size(); ++i)
                 other[i].offset = length_of(k) - runs_[k][runs_[k].size() - i].offset;
         }

@@ -74,7 +74,7 @@ std::vector<EdgePair> matching_edges(const std::vector<Vec3>& ring, double toler
     return pairs;
 }
 
-// Returns for each ring edge its mate, or kNone. Glues runs (e, f), (e+1, f-1), ... of matching pairs, longest first. A
+// Returns for each ring edge its mate, or kNoMate. Glues runs (e, f), (e+1, f-1), ... of matching pairs, longest first. A
 // run ends where nothing matches, and at leaves, where it would come back.
 std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t count) {
     struct Run {
@@ -98,11 +98,11 @@ std::vector<uint32_t> pair_edges(const std::vector<EdgePair>& pairs, uint32_t co
     }
     std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.length > b.length; });
 
-    std::vector<uint32_t> mate(count, kNone);
+    std::vector<uint32_t> mate(count, kNoMate);
     for (const Run& run : runs) {
         EdgePair p = run.first;
         for (uint32_t i = 0; i < run.length; ++i, p = forward(p)) {
-            if (mate[p.first] != kNone || mate[p.second] != kNone) continue;
+            if (mate[p.first] != kNoMate || mate[p.second] != kNoMate) continue;
             mate[p.first] = p.second;
             mate[p.second] = p.first;
         }
@@ -116,7 +116,7 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
     const auto count = static_cast<uint32_t>(mate.size());
     const auto begins_path = [&](uint32_t e) {
         const uint32_t before = mate[e == 0 ? count - 1 : e - 1];
-        if (mate[e] == kNone || before == kNone) return mate[e] != before;
+        if (mate[e] == kNoMate || before == kNoMate) return mate[e] != before;
         return before == e || before != (mate[e] + 1) % count;
     };
     std::vector<uint32_t> starts;
@@ -132,10 +132,10 @@ Sideband to_sideband(const std::vector<uint32_t>& mate, uint32_t side) {
         const uint32_t end = i + 1 < starts.size() ? starts[i + 1] : starts.front() + count;
         CutPath path;
         path.length = end - starts[i];
-        if (mate[starts[i]] != kNone) {
+        if (mate[starts[i]] != kNoMate) {
             // The mate begins with the edge that this path's last edge is glued to.
             const uint32_t first = mate[end > count ? end - 1 - count : end - 1];
-            path.mate = static_cast<int32_t>(std::lower_bound(starts.begin(), starts.end(), first) - starts.begin());
+            path.mate = static_cast<uint32_t>(std::lower_bound(starts.begin(), starts.end(), first) - starts.begin());
         }
         s.paths.push_back(path);
     }

@@ -130,19 +130,19 @@ Result<OpenedMesh> open_mesh(const Mesh& mesh, const Topology& topology, const C
     std::rotate(half_edges.begin(), half_edges.begin() + static_cast<std::ptrdiff_t>(no_node ? 0 : start),
                 half_edges.end());
 
-    std::vector<int32_t> path_of(topology.twin.size(), -1);
+    std::vector<uint32_t> path_of(topology.twin.size(), kNoMate);
     for (size_t i = 0; i < half_edges.size(); ++i) {
         opened.loop.push_back(corner(half_edges[i]));
         if (i == 0 || is_node(i)) {
-            opened.paths.push_back({static_cast<uint32_t>(i), -1, from(mesh, half_edges[i]), 0});
+            opened.paths.push_back({static_cast<uint32_t>(i), kNoMate, from(mesh, half_edges[i]), 0});
         }
-        path_of[half_edges[i]] = static_cast<int32_t>(opened.paths.size() - 1);
+        path_of[half_edges[i]] = static_cast<uint32_t>(opened.paths.size() - 1);
     }
     for (size_t k = 0; k < opened.paths.size(); ++k) {
         BoundaryPath& path = opened.paths[k];
         path.end_node = opened.paths[(k + 1) % opened.paths.size()].begin_node;
         const uint32_t twin = topology.twin[half_edges[path.first]];
-        path.mate = twin == kNone ? -1 : path_of[twin];
+        path.mate = twin == kNone ? kNoMate : path_of[twin];
     }
     return opened;
 }

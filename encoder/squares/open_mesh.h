@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "encoder/surface/mesh.h"
+#include "format/mate.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -16,8 +17,8 @@ using CutEdges = std::vector<uint8_t>;
 
 // A directed run of boundary edges of M' between two cut-nodes.
 struct BoundaryPath {
-    uint32_t first = 0;  // index into OpenedMesh::loop of its first vertex; it ends where the next path begins
-    int32_t mate = -1;   // index of the path on the other side of the cut, which runs the other way; -1: input boundary
+    uint32_t first = 0;       // index into OpenedMesh::loop of its first vertex; it ends where the next path begins
+    uint32_t mate = kNoMate;  // index of the path on the other side of the cut; it runs the other way
     uint32_t begin_node = 0, end_node = 0;  // cut-nodes: vertices of M
 };
 

@@ -29,9 +29,9 @@ void sample_boundary(const SquareBoundary& boundary, SquareGrid& image) {
     for (size_t k = 0; k < sideband.paths.size(); ++k) {
         const uint32_t length = sideband.paths[k].length * scale;
         begins.push_back(begin);
-        const int32_t mate = sideband.paths[k].mate;
-        if (mate >= 0 && static_cast<size_t>(mate) < k) {
-            const uint32_t mate_begin = begins[static_cast<size_t>(mate)];
+        const uint32_t mate = sideband.paths[k].mate;
+        if (mate < k) {
+            const uint32_t mate_begin = begins[mate];
             for (uint32_t t = 0; t < length; ++t) ring[(begin + t) % total] = ring[(mate_begin + length - t) % total];
         } else {
             const std::vector<uint32_t>& loop = boundary.opened.loop;

@@ -31,7 +31,7 @@ void mark_boundary(const SeamTable& table, uint32_t side, const std::vector<uint
     }
     const uint32_t unit = (side - 1) / (table.node_side - 1);
     for (uint32_t p = 0; p < table.path_count; ++p) {
-        if (table.mate[p] != SeamTable::kBoundary) continue;
+        if (table.mate[p] != kNoMate) continue;
         for (uint32_t k = table.first[p] * unit; k <= table.first[p + 1] * unit; ++k)
             marked[ring[k % ring.size()]] = true;
     }

@@ -18,7 +18,7 @@ Error error(std::string message) { return {Stage::kWrite, std::move(message)}; }
 
 std::string image_name(size_t i) { return "image " + std::to_string(i); }
 
-// Says what is wrong. Empty if all is well.
+// Whether the format can hold the images.
 Result<void> check(std::span<const SquareImage> images, const CodingParameters& p) {
     if (images.empty()) return error("no image to write");
     if (images.size() > kMaxImages) return error(std::to_string(images.size()) + " images: a file holds at most 65536");

@@ -8,6 +8,7 @@
 
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/code_bands.h"
+#include "encoder/code/file_units.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/squares/write_squares.h"
 #include "format/checksum.h"
@@ -89,7 +90,7 @@ Bytes encode(const std::vector<SquareImage>& images, const CodingParameters& par
 }
 
 // A search with floats chooses the values of undefined samples. On another machine these bytes may differ.
-Bytes encode(const ChartLevels& charts, const CodingParameters& parameters) {
+Bytes encode_charts(const ChartLevels& charts, const CodingParameters& parameters) {
     auto writer = charts_writer(charts, parameters);
     if (!writer.ok()) {
         std::fprintf(stderr, "charts: %s\n", writer.error().message.c_str());
@@ -318,27 +319,29 @@ void write_valid(Writer& out) {
 Bytes kept_vector(const fs::path& folder) { return read_bytes(folder / "valid/charts-encoder-lossy.gim"); }
 
 void write_valid_charts(Writer& out, const Bytes& kept) {
-    out.valid("charts-pillow-lossless", encode(pillow(5, 5, 2), lossless(10, 3)));
-    out.valid("charts-pillow-lossy", encode(pillow(8, 8, 3), lossy(12, 3, 6)));
-    out.valid("charts-unequal-lossless", encode(pillow(8, 6, 2), lossless(12, 3)));
-    out.valid("charts-unequal-lossy", encode(pillow(9, 6, 2), lossy(12, 3, 40)));
-    out.valid("charts-open-lossless", encode(open_sheet(2), lossless(9, 3)));
-    out.valid("charts-open-lossy", encode(open_sheet(2), lossy(12, 3, 25)));
-    out.valid("charts-torus-lossless", encode(torus_of_one_chart(17, 3), lossless(12, 3)));
-    out.valid("charts-torus-lossy", encode(torus_of_one_chart(33, 3), lossy(12, 3, 30)));
+    out.valid("charts-pillow-lossless", encode_charts(pillow(5, 5, 2), lossless(10, 3)));
+    out.valid("charts-pillow-lossy", encode_charts(pillow(8, 8, 3), lossy(12, 3, 6)));
+    out.valid("charts-unequal-lossless", encode_charts(pillow(8, 6, 2), lossless(12, 3)));
+    out.valid("charts-unequal-lossy", encode_charts(pillow(9, 6, 2), lossy(12, 3, 40)));
+    out.valid("charts-open-lossless", encode_charts(open_sheet(2), lossless(9, 3)));
+    out.valid("charts-open-lossy", encode_charts(open_sheet(2), lossy(12, 3, 25)));
+    out.valid("charts-torus-lossless", encode_charts(torus_of_one_chart(17, 3), lossless(12, 3)));
+    out.valid("charts-torus-lossy", encode_charts(torus_of_one_chart(33, 3), lossy(12, 3, 30)));
     // Boxes that no wavelet halves.
     out.valid("charts-ladder-lossless",
-              encode(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNone}, 1), lossless(8, 3)));
+              encode_charts(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNoMate}, 1), lossless(8, 3)));
     out.valid("charts-ladder-lossy",
-              encode(made_images(12, 3, {rectangle_chart(12, 2, 3)}, {kNone, kNone, kNone}, 1), lossy(12, 3, 3)));
+              encode_charts(made_images(12, 3, {rectangle_chart(12, 2, 3)}, {kNoMate, kNoMate, kNoMate}, 1),
+                            lossy(12, 3, 3)));
     out.valid("charts-encoder-lossy", kept);
     // As fine as the rectangle and finer.
     CodingParameters planes = lossy(10, 3, 30);
     planes.planes = {{ChunkType::kNormals, chart_plane(17, 11, 0, 20, -30)},
                      {ChunkType::kColors, chart_plane(17, 11, 1, 10, 40)}};
-    out.valid("charts-open-planes", encode(open_sheet(2), planes));
+    out.valid("charts-open-planes", encode_charts(open_sheet(2), planes));
     planes.planes = {{ChunkType::kColors, chart_plane(2, 9, 0, 4, 40)}};
-    out.valid("charts-ladder-planes", encode(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNone}, 1), planes));
+    out.valid("charts-ladder-planes",
+              encode_charts(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNoMate}, 1), planes));
 }
 
 void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {
@@ -554,7 +557,7 @@ void write_invalid_chart_tables(Writer& out, const Bytes& file) {
 void write_invalid_chart_planes(Writer& out) {
     CodingParameters parameters = lossless(9, 3);
     parameters.planes = {{ChunkType::kColors, chart_plane(17, 11, 0, 10, 40)}};
-    const Bytes file = encode(open_sheet(2), parameters);
+    const Bytes file = encode_charts(open_sheet(2), parameters);
     const auto changed = [&](const char* name, const std::function<void(Bytes&)>& change) {
         out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads.back()); }));
     };
@@ -564,7 +567,7 @@ void write_invalid_chart_planes(Writer& out) {
     changed("malformed.charts-plane-magnitude-too-large", [](Bytes& b) { b.resize(6), b.resize(70, 0xFF); });
     parameters.planes = {{ChunkType::kColors, chart_plane(600, 3, 0, 10, 40)}};
     out.invalid("limit-exceeded.charts-plane-side",
-                with_parts(encode(made_images(600, 3, {rectangle_chart(4, 3, 1)}, {kNone}, 1), parameters),
+                with_parts(encode_charts(made_images(600, 3, {rectangle_chart(4, 3, 1)}, {kNoMate}, 1), parameters),
                            [](Parts& p) { p.payloads.back()[5] = 5; }));
 }
 
@@ -685,7 +688,7 @@ int main(int argc, char** argv) {
     write_invalid_container(out, plain, fine);
     write_invalid_planes(out);
     write_invalid_payloads(out, plain, sphere, torus_file);
-    const Bytes chart = encode(made_images(4, 3, {rectangle_chart(4, 3, 1)}, {kNone}, 1), lossless(12, 3));
+    const Bytes chart = encode_charts(made_images(4, 3, {rectangle_chart(4, 3, 1)}, {kNoMate}, 1), lossless(12, 3));
     write_invalid_chart_tables(out, chart);
     write_invalid_borders(out, chart);
     write_invalid_chart_planes(out);

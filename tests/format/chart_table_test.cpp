@@ -76,7 +76,7 @@ ChartTable random_table(Random& random, const Header& header) {
         chart.atlas_column = static_cast<int32_t>(random.below(header.width + 40)) - 40;
         chart.atlas_row = static_cast<int32_t>(random.below(header.height + 40)) - 40;
         chart.path_count = 1 + random.below(6);
-        for (uint32_t k = 0; k < chart.path_count; ++k) table.mates.push_back(kUnmated);
+        for (uint32_t k = 0; k < chart.path_count; ++k) table.mates.push_back(kNoMate);
         table.charts.push_back(chart);
     }
     // Some paths are mates, in any order.
@@ -121,7 +121,7 @@ TEST(ChartTable, HandWrittenBytesAreRead) {
     EXPECT_EQ(back.table.charts[1].rows, 9u);
     EXPECT_EQ(back.table.charts[1].atlas_column, 10);
     EXPECT_EQ(back.table.charts[1].atlas_row, -2);
-    EXPECT_EQ(back.table.mates, (std::vector<uint32_t>{4, 3, kUnmated, 1, 0}));
+    EXPECT_EQ(back.table.mates, (std::vector<uint32_t>{4, 3, kNoMate, 1, 0}));
     EXPECT_EQ(back.table.levels[1].triangles, 8u);
     EXPECT_EQ(test::table_bytes(two_charts(), 16, 9), bytes);
 }
@@ -173,7 +173,7 @@ TEST(ChartTable, WhatIsReadFromDamagedBytesStaysInBounds) {
             ASSERT_EQ(paths, back.table.mates.size());
             for (uint32_t p = 0; p < paths; ++p) {
                 const uint32_t mate = back.table.mates[p];
-                if (mate == kUnmated) continue;
+                if (mate == kNoMate) continue;
                 ASSERT_LT(mate, paths);
                 EXPECT_NE(mate, p);
                 EXPECT_EQ(back.table.mates[mate], p);

@@ -39,21 +39,21 @@ inline Sideband random_sideband(Random& random, uint32_t node_side, uint32_t pai
     for (uint32_t i = 0; i < count; ++i) order[i] = i;
     for (uint32_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
     for (uint32_t i = 0; i < pairs; ++i) {
-        s.paths[order[2 * i]].mate = static_cast<int32_t>(order[2 * i + 1]);
-        s.paths[order[2 * i + 1]].mate = static_cast<int32_t>(order[2 * i]);
+        s.paths[order[2 * i]].mate = order[2 * i + 1];
+        s.paths[order[2 * i + 1]].mate = order[2 * i];
     }
     if (nested) {
         // Re-pair the mated places as brackets: a random legal sequence.
-        std::vector<int32_t> stack;
+        std::vector<uint32_t> stack;
         uint32_t opens_left = pairs;
         for (uint32_t i = 0; i < count; ++i) {
             if (s.paths[i].mate == kNoMate) continue;
             if (opens_left > 0 && (stack.empty() || random.below(2) == 0)) {
-                stack.push_back(static_cast<int32_t>(i));
+                stack.push_back(i);
                 --opens_left;
             } else {
                 s.paths[i].mate = stack.back();
-                s.paths[static_cast<size_t>(stack.back())].mate = static_cast<int32_t>(i);
+                s.paths[stack.back()].mate = i;
                 stack.pop_back();
             }
         }

@@ -34,7 +34,7 @@ void read_charts(std::span<const uint8_t> bytes, uint32_t width, uint32_t height
     if (reader.finish() != Status::kOk) return;
     std::vector<BorderPath> paths(reader.path_count());
     for (uint32_t p = 0; p < paths.size(); ++p) {
-        if (mates[p] != kUnmated && (mates[p] >= paths.size() || mates[mates[p]] != p)) __builtin_trap();
+        if (mates[p] != kNoMate && (mates[p] >= paths.size() || mates[mates[p]] != p)) __builtin_trap();
         paths[p].mate = mates[p];
     }
     RangeDecoder decoder(bytes);

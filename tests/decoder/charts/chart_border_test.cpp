@@ -85,13 +85,13 @@ Level random_level(Random& random) {
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t most = left - (count - 1 - k);
             const uint32_t n = k + 1 == count ? left : 1 + random.below(most);
-            level.paths.push_back({kUnmated, n, 0, c});
+            level.paths.push_back({kNoMate, n, 0, c});
             left -= n;
         }
     }
     for (uint32_t p = 0; p < level.paths.size(); ++p) {
         const uint32_t q = random.below(static_cast<uint32_t>(level.paths.size()));
-        if (q >= p || level.paths[p].mate != kUnmated || level.paths[q].mate != kUnmated) continue;
+        if (q >= p || level.paths[p].mate != kNoMate || level.paths[q].mate != kNoMate) continue;
         level.paths[p].mate = q;
         level.paths[q].mate = p;
     }
@@ -251,7 +251,7 @@ TEST(ChartBorder, DamagedStreamsStayInBounds) {
 }
 
 // A box of 4 x 3, one path or two.
-bool accepted(const std::function<void(test::RawBorderWriter&)>& write, std::vector<uint32_t> mates = {kUnmated}) {
+bool accepted(const std::function<void(test::RawBorderWriter&)>& write, std::vector<uint32_t> mates = {kNoMate}) {
     RangeEncoder encoder;
     test::RawBorderWriter writer(&encoder);
     write(writer);

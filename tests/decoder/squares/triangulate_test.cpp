@@ -28,17 +28,17 @@ Counts of_schema(const SeamTable& t) {
     const uint32_t n = t.path_count;
     if (n == 0) return {1, 1};
     int64_t edges = 0;
-    for (uint32_t i = 0; i < n; ++i) edges += t.mate[i] == SeamTable::kBoundary || i < t.mate[i];
+    for (uint32_t i = 0; i < n; ++i) edges += t.mate[i] == kNoMate || i < t.mate[i];
     c.euler = int64_t{t.node_class_count} - edges + 1;
     std::vector<bool> seen(n);
     for (uint32_t i = 0; i < n; ++i) {
-        if (t.mate[i] != SeamTable::kBoundary || seen[i]) continue;
+        if (t.mate[i] != kNoMate || seen[i]) continue;
         ++c.loops;
         // The next open path turns around the end node across glued paths.
         for (uint32_t p = i; !seen[p];) {
             seen[p] = true;
             p = (p + 1) % n;
-            while (t.mate[p] != SeamTable::kBoundary) p = (t.mate[p] + 1u) % n;
+            while (t.mate[p] != kNoMate) p = (t.mate[p] + 1u) % n;
         }
     }
     return c;

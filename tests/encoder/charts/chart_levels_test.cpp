@@ -103,7 +103,7 @@ TEST_P(ChartLevelsOf, BordersOfEveryLevelAreClosedWalksInTheirBoxes) {
         }
         size_t zipper = 0;
         for (uint32_t p = 0; p < images.mates.size(); ++p) {
-            if (images.mates[p] == kNone || images.mates[p] < p) continue;
+            if (images.mates[p] == kNoMate || images.mates[p] < p) continue;
             ASSERT_LT(zipper, borders.zippers.size());
             const auto& steps = borders.zippers[zipper++];
             const auto both = std::count(steps.begin(), steps.end(), ZipStep::kBoth);

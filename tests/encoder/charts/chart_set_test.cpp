@@ -49,7 +49,7 @@ TEST(ChartSet, MatesRunAlongTheSameVerticesTheOtherWay) {
                 std::vector<uint32_t> own = vertices_of(charts[c], p);
                 EXPECT_EQ(own.front(), path.begin_node);
                 EXPECT_EQ(own.back(), path.end_node);
-                if (path.mate_chart == kNone) {
+                if (path.mate_chart == kNoMate) {
                     unmated_edges += own.size() - 1;
                     continue;
                 }

@@ -78,7 +78,7 @@ inline MadeLevel make_level(const std::vector<MadeChart>& charts, const std::vec
     }
     const auto& paths = made.image.seams.paths;
     for (uint32_t p = 0; p < paths.size(); ++p) {
-        if (mates[p] != kNone && mates[p] > p)
+        if (mates[p] != kNoMate && mates[p] > p)
             made.image.seams.zippers.push_back(even_zipper(paths[p].length, paths[mates[p]].length));
     }
     made.image.positions.assign(mask.defined.size(), Vec3::Zero());

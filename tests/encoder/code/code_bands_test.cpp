@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "encoder/code/file_units.h"
 #include "encoder/squares/write_squares.h"
 #include "gim/decoder.hpp"
 #include "tests/encoder/grid_images.h"
@@ -58,7 +59,8 @@ TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
     for (const SquareImage& image : {waves(), torus_image(kSide, 700, 300)})
         for (const double quantizer : {1.0, 8.0, 60.0, 500.0}) {
             const SeamTable seams = seams_of(image);
-            const FileWriter writer = squares_writer({&image, 1}, lossy(quantizer)).value();
+            const auto made = squares_writer({&image, 1}, lossy(quantizer));
+            const FileWriter& writer = made.value();
             const Header header = writer.header(quantizer);
             ASSERT_GT(header.tangential, 0);
             ASSERT_GT(header.cell_area, 1);

@@ -101,7 +101,7 @@ TEST(GridSurface, EdgesJoinNeighboursOfAChartOnly) {
 
 TEST(GridSurface, PathsWithoutMateAreInputBoundaries) {
     MultiChartImage image = sphere_charts(9);
-    image.seams.paths[0].mate = image.seams.paths[3].mate = kNone;
+    image.seams.paths[0].mate = image.seams.paths[3].mate = kNoMate;
     image.seams.zippers.erase(image.seams.zippers.begin());
     const GridGluing gluing = glue_charts(image.mask, image.seams).value();
     EXPECT_TRUE(gluing.on_input_boundary[4]);

@@ -127,7 +127,7 @@ TEST(BoundaryMap, NoLeafOfTheCutLiesOnACorner) {
         uint32_t at = sideband.start;
         for (size_t k = 0; k < sideband.paths.size(); ++k) {
             at += sideband.paths[k].length;
-            if (sideband.paths[k].mate == static_cast<int32_t>((k + 1) % sideband.paths.size())) {
+            if (sideband.paths[k].mate == (k + 1) % sideband.paths.size()) {
                 EXPECT_NE(at % (sideband.node_side - 1), 0u) << l.input.name;
             }
         }

@@ -47,9 +47,9 @@ TEST(OpenMesh, MatesRunThroughTheSameVerticesInOppositeOrder) {
             return run;
         };
         for (size_t k = 0; k < disk.paths.size(); ++k) {
-            const int32_t mate = disk.paths[k].mate;
-            if (mate < 0) continue;
-            std::vector<uint32_t> other = vertices(static_cast<size_t>(mate));
+            const uint32_t mate = disk.paths[k].mate;
+            if (mate == kNoMate) continue;
+            std::vector<uint32_t> other = vertices(mate);
             std::reverse(other.begin(), other.end());
             EXPECT_EQ(vertices(k), other) << m.name << " path " << k;
         }

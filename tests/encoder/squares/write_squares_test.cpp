@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "encoder/code/file_units.h"
 #include "format/seam.h"
 #include "gim/decoder.hpp"
 #include "tests/format/random_sideband.h"

@@ -1,4 +1,4 @@
-#include "encoder/image/density.h"
+#include "encoder/charts/adapt_charts.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ double area_of(const std::vector<ChartMap>& maps) {
     return sum;
 }
 
-TEST(Density, ChartsGrowWhereTheSurfaceNeedsSamples) {
+TEST(AdaptCharts, ChartsGrowWhereTheSurfaceNeedsSamples) {
     const Mesh mesh = wavy_sheet(0.05);
     const Atlas even = atlas_of(mesh);
     Atlas adapted = even;
@@ -66,7 +66,7 @@ TEST(Density, ChartsGrowWhereTheSurfaceNeedsSamples) {
     for (size_t c = 0; c < adapted.charts.size(); ++c) EXPECT_FALSE(adapted.maps[c].overlaps);
 }
 
-TEST(Density, FlatChartsStayAsTheyAre) {
+TEST(AdaptCharts, FlatChartsStayAsTheyAre) {
     const Mesh mesh = wavy_sheet(0);
     const Atlas even = atlas_of(mesh);
     Atlas adapted = even;
