@@ -13,11 +13,11 @@
 namespace gim {
 namespace {
 
-Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, double weld_tolerance,
+Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, double weld_tolerance,
                            EncodeOptions options, const Progress& progress) {
     StageClock clock(progress);
     clock.begin(Stage::kInput);
-    GIM_TRY(image, import_image(planes, side, weld_tolerance));
+    GIM_TRY(image, import_image(channels, side, weld_tolerance));
 
     // The image's own surface is the reference.
     Mesh surface = samples_as_mesh(image);
@@ -38,13 +38,13 @@ Result<Encoded> run_stages(const std::vector<float>& planes, uint32_t side, doub
 
 }  // namespace
 
-Result<Encoded> encode_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance,
+Result<Encoded> encode_image(const std::vector<float>& channels, uint32_t side, double weld_tolerance,
                              const EncodeOptions& options, const Progress& progress) {
     EncodeOptions checked_options = options;
     checked_options.side = 257;  // the image has its own side
     checked_options.node_side = 17;
     GIM_CHECK(check_options(checked_options));
-    return guarded(options.threads, [&] { return run_stages(planes, side, weld_tolerance, options, progress); });
+    return guarded(options.threads, [&] { return run_stages(channels, side, weld_tolerance, options, progress); });
 }
 
 }  // namespace gim

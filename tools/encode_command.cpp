@@ -18,7 +18,7 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
             return Error{Stage::kInput,
                          "is a .gim file already; decode it first (gim decode IN.gim OUT.ply), then encode the mesh"};
         case Input::Kind::kRawImage:
-            return encode_image(input.raw.planes, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
+            return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
                                 progress);
         case Input::Kind::kMesh:
             break;

@@ -19,18 +19,18 @@ Result<RawImage> read_raw_image(const Bytes& bytes) {
                                         std::to_string(bytes.size()) +
                                         " bytes are not 12 * side * side for any side); get a fresh copy"};
     }
-    image.planes.resize(bytes.size() / sizeof(float));
-    std::memcpy(image.planes.data(), bytes.data(), bytes.size());
+    image.channels.resize(bytes.size() / sizeof(float));
+    std::memcpy(image.channels.data(), bytes.data(), bytes.size());
     return image;
 }
 
 TriangleMesh to_mesh(const RawImage& image) {
     const uint32_t n = image.side;
-    const size_t plane = size_t{n} * n;
+    const size_t samples = size_t{n} * n;
     TriangleMesh mesh;
-    mesh.positions.resize(plane);
-    for (size_t i = 0; i < plane; ++i) {
-        mesh.positions[i] = {image.planes[i], image.planes[plane + i], image.planes[2 * plane + i]};
+    mesh.positions.resize(samples);
+    for (size_t i = 0; i < samples; ++i) {
+        mesh.positions[i] = {image.channels[i], image.channels[samples + i], image.channels[2 * samples + i]};
     }
     const auto squared = [&](uint32_t a, uint32_t b) {
         double sum = 0;
@@ -59,11 +59,11 @@ TriangleMesh to_mesh(const RawImage& image) {
 }
 
 double diagonal_of(const RawImage& image) {
-    const size_t plane = size_t{image.side} * image.side;
+    const size_t samples = size_t{image.side} * image.side;
     double sum = 0;
     for (size_t k = 0; k < 3; ++k) {
-        const auto begin = image.planes.begin() + static_cast<std::ptrdiff_t>(k * plane);
-        const auto [low, high] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(plane));
+        const auto begin = image.channels.begin() + static_cast<std::ptrdiff_t>(k * samples);
+        const auto [low, high] = std::minmax_element(begin, begin + static_cast<std::ptrdiff_t>(samples));
         const double extent = static_cast<double>(*high) - static_cast<double>(*low);
         sum += extent * extent;
     }

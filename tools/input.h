@@ -13,7 +13,7 @@ namespace gim {
 // A headerless geometry image of other people: side*side*3 float32, planar (all x, all y, all z).
 struct RawImage {
     uint32_t side = 0;
-    std::vector<float> planes;
+    std::vector<float> channels;
 };
 
 // Of a file named *.gim that is none of ours. The size must be 12 * side * side bytes.

@@ -171,7 +171,7 @@ Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_
 PlaneWorkspace lay_out_chart_plane(const PlaneLevel& plane, Arena* arena) {
     PlaneWorkspace ws;
     lay_out_coder(plane.width, arena, &ws.pyramid);
-    lay_out_planes(plane.width, plane.height, arena, &ws.pyramid);
+    lay_out_samples(plane.width, plane.height, arena, &ws.pyramid);
     return ws;
 }
 

@@ -2,7 +2,7 @@
 
 namespace gim {
 
-void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
+void lay_out_samples(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws) {
     const uint32_t low_columns = low_count(columns), low_rows = low_count(rows);
     const size_t all = size_t{columns} * rows * 3, low = size_t{low_columns} * low_rows * 3;
     // Bands need less memory, but the base is decoded there, too.

@@ -26,7 +26,7 @@ struct PyramidWorkspace {
 };
 
 // Takes bands and images. columns, rows: of the requested level. The rest is shared by the charts of an image.
-void lay_out_planes(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws);
+void lay_out_samples(uint32_t columns, uint32_t rows, Arena* arena, PyramidWorkspace* ws);
 // Takes models, band_work and synthesis. columns: of the widest level.
 void lay_out_coder(uint32_t columns, Arena* arena, PyramidWorkspace* ws);
 

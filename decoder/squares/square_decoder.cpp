@@ -59,7 +59,7 @@ PlaneWorkspace lay_out_plane(uint32_t side, Arena* arena) {
     const size_t ring = ring_length(side);
     PlaneWorkspace ws;
     lay_out_coder(side, arena, &ws.pyramid);
-    lay_out_planes(side, side, arena, &ws.pyramid);
+    lay_out_samples(side, side, arena, &ws.pyramid);
     ws.class_of = arena->take<uint32_t>(ring);
     ws.pyramid.rim = ws.class_of;  // no longer needed when classes are made
     ws.fuse.sums = arena->take<float>(ring * 3);

@@ -128,7 +128,7 @@ class CoordinateSystem {
     const FitSystem& system_;
     const DetailBasis& basis_;
     const GridGluing& gluing_;
-    Planes in_, out_;
+    Channels in_, out_;
 };
 
 // Returns the change of the coordinates, by conjugate gradients. c: the current coordinates.

@@ -13,10 +13,10 @@ namespace {
 
 constexpr size_t kRowsPerBlock = 16;
 
-Planes make_planes(size_t count) {
-    Planes planes;
-    for (auto& plane : planes) plane.assign(count, 0.0f);
-    return planes;
+Channels make_channels(size_t count) {
+    Channels channels;
+    for (auto& channel : channels) channel.assign(count, 0.0f);
+    return channels;
 }
 
 class Solver {
@@ -42,8 +42,8 @@ class Solver {
     }
 
     Solution run(const std::vector<Vec3>& right, const SolverOptions& options) {
-        Planes x = make_planes(count_), residual = make_planes(count_), z = make_planes(count_);
-        Planes direction = make_planes(count_), image = make_planes(count_);
+        Channels x = make_channels(count_), residual = make_channels(count_), z = make_channels(count_);
+        Channels direction = make_channels(count_), image = make_channels(count_);
         for (size_t v = 0; v < count_; ++v) {
             for (int k = 0; k < 3; ++k) residual[k][v] = static_cast<float>(right[v][k]);
         }
@@ -107,7 +107,7 @@ class Solver {
         return total;
     }
 
-    double dot(const Planes& a, const Planes& b) const {
+    double dot(const Channels& a, const Channels& b) const {
         return sum_rows([&](size_t begin, size_t end) {
             double sum = 0;
             for (size_t v = begin; v < end; ++v) {
@@ -117,12 +117,12 @@ class Solver {
         });
     }
 
-    void sum_over_classes(Planes& values) const {
+    void sum_over_classes(Channels& values) const {
         for (const auto& members : gluing_.shared) {
-            for (auto& plane : values) {
+            for (auto& channel : values) {
                 float sum = 0;
-                for (const uint32_t v : members) sum += plane[v];
-                for (const uint32_t v : members) plane[v] = sum;
+                for (const uint32_t v : members) sum += channel[v];
+                for (const uint32_t v : members) channel[v] = sum;
             }
         }
     }
@@ -132,7 +132,7 @@ class Solver {
         Eigen::Matrix<float, 6, 1> sum;
         std::vector<std::array<float, 6>> blocks(count_);
         for (size_t v = 0; v < count_; ++v) {
-            for (size_t k = 0; k < 6; ++k) blocks[v][k] = matrix_.plane(StencilMatrix::kDiagonal, k)[v];
+            for (size_t k = 0; k < 6; ++k) blocks[v][k] = matrix_.channel(StencilMatrix::kDiagonal, k)[v];
         }
         for (const auto& members : gluing_.shared) {
             sum.setZero();
@@ -158,7 +158,7 @@ class Solver {
     }
 
     // Computes z = M^-1 r, and returns the two products that the next step needs.
-    Dots precondition(const Planes& r, Planes& z) const {
+    Dots precondition(const Channels& r, Channels& z) const {
         std::vector<Dots> partial((height_ + kRowsPerBlock - 1) / kRowsPerBlock);
         parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t block, size_t first, size_t last) {
             const size_t begin = first * width_, end = last * width_;
@@ -184,12 +184,12 @@ class Solver {
         return total;
     }
 
-    void apply(const Planes& in, Planes& out) const {
+    void apply(const Channels& in, Channels& out) const {
         matrix_.multiply(in, out);
         sum_over_classes(out);
         for_rows([&](size_t begin, size_t end) {
-            for (auto& plane : out) {
-                for (size_t v = begin; v < end; ++v) plane[v] *= free_[v];
+            for (auto& channel : out) {
+                for (size_t v = begin; v < end; ++v) channel[v] *= free_[v];
             }
         });
     }
@@ -207,11 +207,11 @@ class Solver {
 
 // Adds to out[begin..end) the product block[begin - block_shift ..) * in[begin + shift ..).
 void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift,
-                               const Planes& in, Planes& out) const {
+                               const Channels& in, Channels& out) const {
     const auto n = static_cast<ptrdiff_t>(end - begin);
     const auto base = static_cast<ptrdiff_t>(begin);
     const float* b[6];
-    for (size_t k = 0; k < 6; ++k) b[k] = plane(kind, k) + base + block_shift;
+    for (size_t k = 0; k < 6; ++k) b[k] = channel(kind, k) + base + block_shift;
     const float *x = in[0].data() + base + shift, *y = in[1].data() + base + shift, *z = in[2].data() + base + shift;
     float* __restrict ox = out[0].data() + base;
     float* __restrict oy = out[1].data() + base;
@@ -224,14 +224,14 @@ void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t bl
 }
 
 // The first of two samples stores the block between them. Each row gathers from itself and its two neighbours.
-void StencilMatrix::multiply(const Planes& in, Planes& out) const {
+void StencilMatrix::multiply(const Channels& in, Channels& out) const {
     const auto width = static_cast<ptrdiff_t>(width_);
     parallel_blocks(height_, kRowsPerBlock, 0, [&](size_t, size_t first, size_t last) {
         for (size_t row = first; row < last; ++row) {
             const size_t begin = row * width_, end = begin + width_;
-            for (auto& plane : out)
-                std::fill(plane.begin() + static_cast<ptrdiff_t>(begin), plane.begin() + static_cast<ptrdiff_t>(end),
-                          0.0f);
+            for (auto& channel : out)
+                std::fill(channel.begin() + static_cast<ptrdiff_t>(begin),
+                          channel.begin() + static_cast<ptrdiff_t>(end), 0.0f);
             accumulate(kDiagonal, begin, end, 0, 0, in, out);
             accumulate(kEast, begin, end - 1, 0, 1, in, out);
             accumulate(kEast, begin + 1, end, -1, -1, in, out);

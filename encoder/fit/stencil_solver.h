@@ -17,13 +17,13 @@ namespace gim {
 using SymmetricBlock = std::array<float, 6>;
 
 // One array per component.
-using Planes = std::array<std::vector<float>, 3>;
+using Channels = std::array<std::vector<float>, 3>;
 
 class StencilMatrix {
   public:
     StencilMatrix(uint32_t width, uint32_t height) : width_(width), height_(height) {
-        for (auto& planes : block_) {
-            for (auto& plane : planes) plane.assign(size_t{width} * height, 0.0f);
+        for (auto& channels : block_) {
+            for (auto& channel : channels) channel.assign(size_t{width} * height, 0.0f);
         }
     }
 
@@ -43,14 +43,14 @@ class StencilMatrix {
     }
 
     // Computes out = matrix * in, in parallel. Each sample is an unknown of its own.
-    void multiply(const Planes& in, Planes& out) const;
+    void multiply(const Channels& in, Channels& out) const;
 
     enum Kind : size_t { kDiagonal, kEast, kSouth, kSouthEast, kSouthWest, kKinds };
-    const float* plane(Kind kind, size_t k) const { return block_[kind][k].data(); }
+    const float* channel(Kind kind, size_t k) const { return block_[kind][k].data(); }
 
   private:
-    void accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift, const Planes& in,
-                    Planes& out) const;
+    void accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t block_shift, ptrdiff_t shift, const Channels& in,
+                    Channels& out) const;
 
     uint32_t width_, height_;
     std::array<std::array<std::vector<float>, 6>, kKinds> block_;

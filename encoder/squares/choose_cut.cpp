@@ -19,7 +19,7 @@ constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.0
 struct Candidate {
     CutPreference preference;
     std::optional<CutSurface> cut;
-    std::optional<SingleChart> chart;
+    std::optional<MadeSquare> square;
     double log_bytes = std::numeric_limits<double>::infinity();
 };
 
@@ -51,35 +51,35 @@ std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions
 
 }  // namespace
 
-bool may_choose_chart(const EncodeOptions& options) {
+bool may_choose_cut(const EncodeOptions& options) {
     return is_searched(options.rate) && options.fit == FitStrength::kAuto;
 }
 
-std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+std::optional<ChosenCut> choose_cut(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
     clock.begin(Stage::kCut);
     std::vector<Candidate> candidates = cut_in_several_ways(mesh, options);
 
     clock.begin(Stage::kParametrize);
     for_each_at_once(candidates, [&](Candidate& candidate) {
         StageClock unheard({});
-        auto chart = map_and_sample(*candidate.cut, mesh, options, unheard);
-        if (chart.ok()) candidate.chart = std::move(chart.value());
+        auto square = map_and_sample(*candidate.cut, mesh, options, unheard);
+        if (square.ok()) candidate.square = std::move(square.value());
     });
-    std::erase_if(candidates, [](const Candidate& candidate) { return !candidate.chart; });
+    std::erase_if(candidates, [](const Candidate& candidate) { return !candidate.square; });
     if (candidates.empty()) return {};
 
     if (candidates.size() > 1) {
         clock.begin(Stage::kFit);
-        const CodingTrial trial(mesh, options, candidates[0].chart->image);
+        const CodingTrial trial(mesh, options, candidates[0].square->image);
         for_each_at_once(candidates, [&](Candidate& candidate) {
-            const auto log_bytes = trial.log_bytes(candidate.chart->image);
+            const auto log_bytes = trial.log_bytes(candidate.square->image);
             if (log_bytes.ok()) candidate.log_bytes = log_bytes.value();
         });
     }
     const auto best =
         std::min_element(candidates.begin(), candidates.end(),
                          [](const Candidate& a, const Candidate& b) { return a.log_bytes < b.log_bytes; });
-    return ChosenChart{std::move(*best->chart), best->preference};
+    return ChosenCut{std::move(*best->square), best->preference};
 }
 
 }  // namespace gim

@@ -11,14 +11,14 @@
 namespace gim {
 
 // Returns true if the file is fitted to a PSNR or a size.
-bool may_choose_chart(const EncodeOptions& options);
+bool may_choose_cut(const EncodeOptions& options);
 
-struct ChosenChart {
-    SingleChart chart;
+struct ChosenCut {
+    MadeSquare square;
     CutPreference preference;
 };
-// `mesh` must be clean and connected, and may_choose_chart(options) true. Returns nothing if no cut leads to an image
+// `mesh` must be clean and connected, and may_choose_cut(options) true. Returns nothing if no cut leads to an image
 // of that side. The result is the same for any number of threads. Cost: about that of six images and six short fits.
-std::optional<ChosenChart> choose_chart(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
+std::optional<ChosenCut> choose_cut(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
 
 }  // namespace gim

@@ -189,19 +189,19 @@ Sideband find_gluing(const SquareGrid& image, double weld_tolerance) {
     return to_sideband(pair_edges(pairs, ring_length(image.side)), image.side);
 }
 
-Result<SquareImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance) {
-    const size_t plane = size_t{side} * side;
+Result<SquareImage> import_image(const std::vector<float>& channels, uint32_t side, double weld_tolerance) {
+    const size_t samples = size_t{side} * side;
     if (side < 3 || side > (1u << kMaxSideExponent) + 1)
         return error("a geometry image of side " + std::to_string(side) + " cannot be coded: 3 to 16385 are possible");
-    if (planes.size() != plane * 3)
-        return error("a geometry image of side " + std::to_string(side) + " has " + std::to_string(plane * 3) +
-                     " values, not " + std::to_string(planes.size()));
+    if (channels.size() != samples * 3)
+        return error("a geometry image of side " + std::to_string(side) + " has " + std::to_string(samples * 3) +
+                     " values, not " + std::to_string(channels.size()));
     if (!(weld_tolerance >= 0)) return error("the weld tolerance must not be negative");
 
     SquareGrid image;
     image.side = side;
-    for (size_t i = 0; i < plane; ++i) {
-        image.positions.emplace_back(planes[i], planes[plane + i], planes[2 * plane + i]);
+    for (size_t i = 0; i < samples; ++i) {
+        image.positions.emplace_back(channels[i], channels[samples + i], channels[2 * samples + i]);
         if (!image.positions.back().allFinite())
             return error("sample at row " + std::to_string(i / side) + ", column " + std::to_string(i % side) +
                          " is not finite; repair the image first");

@@ -17,7 +17,7 @@ namespace gim {
 //      bit-equal positions. Ring edges that match nothing are a boundary of the surface. A closed surface faces
 //      outwards. An Error names the sample or the side and says what to do.
 // Cost: O(side^2 + ring log ring + matching pairs). Deterministic.
-Result<SquareImage> import_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance);
+Result<SquareImage> import_image(const std::vector<float>& channels, uint32_t side, double weld_tolerance);
 
 // Finds the gluing of the ring and does not change the image. Glues every ring edge to at most one other, which runs
 // the opposite way between the same two points. Paths are empty if nothing matches.

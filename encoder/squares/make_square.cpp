@@ -71,19 +71,19 @@ Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions&
     return CutSurface{std::move(boundary), cut_length(surface.mesh, surface.topology, found.cut)};
 }
 
-Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
-                                   StageClock& clock, const Observer& observer) {
-    SingleChart chart;
-    chart.cut_length = cut.cut_length;
+Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
+                                  StageClock& clock, const Observer& observer) {
+    MadeSquare square;
+    square.cut_length = cut.cut_length;
 
     clock.begin(Stage::kParametrize);
     const Mesh& disk = cut.boundary.opened.mesh;
     const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
     GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, {}, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
-    chart.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
+    square.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
-        observer(show_map("map-even", "least stretch, " + percent(chart.stretch_efficiency), cut.boundary.opened, uv));
+        observer(show_map("map-even", "least stretch, " + percent(square.stretch_efficiency), cut.boundary.opened, uv));
     }
     if (options.density) {
         ParametrizeOptions weighted;
@@ -94,30 +94,30 @@ Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, cons
         uv = std::move(adapted);
         if (observer) observer(show_map("map-density", "denser where it errs", cut.boundary.opened, uv));
     }
-    chart.flipped_triangles = count_flipped(disk, uv);
+    square.flipped_triangles = count_flipped(disk, uv);
 
     clock.begin(Stage::kSample);
     GIM_TRY(sampled, sample_surface(cut.boundary, uv, options.side));
-    chart.image = std::move(sampled);
-    if (observer) observer(make_snapshot("image-sampled", "sampled", chart.image));
+    square.image = std::move(sampled);
+    if (observer) observer(make_snapshot("image-sampled", "sampled", square.image));
     const auto strength = fit_strength(options);
-    if (!strength) return chart;
+    if (!strength) return square;
 
     clock.begin(Stage::kFit);
     FitOptions fit_options;
     fit_options.strength = *strength;
     fit_options.seed = options.seed;
     fit_options.threads = options.threads;
-    GIM_TRY(fitted, fit(chart.image, mesh, fit_options, clock.progress()));
-    chart.image.positions = std::move(fitted.positions);
-    chart.folds = fitted.after.folds;
-    chart.folds_before_fit = fitted.before.folds;
-    if (observer) observer(make_snapshot("image-fitted", "fitted", chart.image));
-    return chart;
+    GIM_TRY(fitted, fit(square.image, mesh, fit_options, clock.progress()));
+    square.image.positions = std::move(fitted.positions);
+    square.folds = fitted.after.folds;
+    square.folds_before_fit = fitted.before.folds;
+    if (observer) observer(make_snapshot("image-fitted", "fitted", square.image));
+    return square;
 }
 
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
-                                        StageClock& clock, const Observer& observer) {
+Result<MadeSquare> make_square(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
+                               StageClock& clock, const Observer& observer) {
     clock.begin(Stage::kCut);
     GIM_TRY(cut, cut_open(make_cuttable(mesh, options.side), options, preference, clock.progress(), observer));
     return map_and_sample(cut, mesh, options, clock, observer);

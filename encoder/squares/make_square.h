@@ -22,7 +22,7 @@ struct CutPreference {
     friend bool operator==(const CutPreference&, const CutPreference&) = default;
 };
 
-struct SingleChart {
+struct MadeSquare {
     SquareImage image;
     double cut_length = 0;           // object units
     double stretch_efficiency = 0;   // of the parametrization that was sampled
@@ -50,11 +50,11 @@ Result<CutSurface> cut_open(const CuttableSurface& surface, const EncodeOptions&
 
 // Runs the stages after the cut. `mesh` is the surface before make_cuttable(). `clock` takes the time of each stage,
 // `observer` gets the states on the way.
-Result<SingleChart> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
-                                   StageClock& clock, const Observer& observer = {});
+Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const EncodeOptions& options,
+                                  StageClock& clock, const Observer& observer = {});
 
 // Runs all stages. `mesh` must be clean and connected.
-Result<SingleChart> make_geometry_image(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
-                                        StageClock& clock, const Observer& observer = {});
+Result<MadeSquare> make_square(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
+                               StageClock& clock, const Observer& observer = {});
 
 }  // namespace gim

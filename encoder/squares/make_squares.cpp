@@ -28,34 +28,34 @@ uint32_t side_of_component(double area, double largest, uint32_t side) {
 }
 
 // Makes the image. Doubles its side, up to `most`, if the cut needs more room than the component's area deserves.
-Result<SingleChart> make_roomy_image(const Mesh& mesh, EncodeOptions options, uint32_t most,
+Result<MadeSquare> make_roomy_square(const Mesh& mesh, EncodeOptions options, uint32_t most,
                                      const CutPreference& preference, StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {
         options.node_side = std::min(options.node_side, options.side);
-        auto chart = make_geometry_image(mesh, options, preference, clock, observer);
-        if (chart.ok() || options.side >= most) return chart;
+        auto square = make_square(mesh, options, preference, clock, observer);
+        if (square.ok() || options.side >= most) return square;
     }
 }
 
-// Makes one component's chart. If `preference` is not known, it is set to the one that was chosen.
-Result<SingleChart> make_chart(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
-                               const Observer& observer, std::optional<CutPreference>& preference) {
-    if (!preference && may_choose_chart(options) && options.side == most) {
-        if (auto choice = choose_chart(mesh, options, clock)) {
+// Makes one component's square. If `preference` is not known, it is set to the one that was chosen.
+Result<MadeSquare> make_component(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
+                                  const Observer& observer, std::optional<CutPreference>& preference) {
+    if (!preference && may_choose_cut(options) && options.side == most) {
+        if (auto choice = choose_cut(mesh, options, clock)) {
             preference = choice->preference;
-            if (!observer) return std::move(choice->chart);
+            if (!observer) return std::move(choice->square);
         }
     }
     if (!preference) preference = CutPreference{};
-    return make_roomy_image(mesh, options, most, *preference, clock, observer);
+    return make_roomy_square(mesh, options, most, *preference, clock, observer);
 }
 
-void add_to_report(const SingleChart& chart, double part_of_area, EncodeReport& report) {
-    report.cut_length += chart.cut_length;
-    report.stretch_efficiency += part_of_area * chart.stretch_efficiency;
-    report.flipped_triangles += chart.flipped_triangles;
-    report.folds += chart.folds;
-    report.folds_before_fit += chart.folds_before_fit;
+void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& report) {
+    report.cut_length += square.cut_length;
+    report.stretch_efficiency += part_of_area * square.stretch_efficiency;
+    report.flipped_triangles += square.flipped_triangles;
+    report.folds += square.folds;
+    report.folds_before_fit += square.folds_before_fit;
 }
 
 }  // namespace
@@ -82,16 +82,16 @@ Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, Sta
         };
         EncodeOptions part_options = options;
         part_options.side = side_of_component(areas[k], largest, options.side);
-        auto chart = make_chart(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
-                                preferences[k]);
-        if (!chart.ok() && parts.size() == 1) return chart.error();
-        if (!chart.ok()) {
-            return Error{chart.error().stage, "component " + std::to_string(k) + " of " + std::to_string(parts.size()) +
-                                                  " (" + std::to_string(parts[k].triangles.size()) +
-                                                  " triangles): " + chart.error().message};
+        auto square = make_component(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
+                                     preferences[k]);
+        if (!square.ok() && parts.size() == 1) return square.error();
+        if (!square.ok()) {
+            return Error{square.error().stage,
+                         "component " + std::to_string(k) + " of " + std::to_string(parts.size()) + " (" +
+                             std::to_string(parts[k].triangles.size()) + " triangles): " + square.error().message};
         }
-        add_to_report(chart.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
-        images.push_back(std::move(chart.value().image));
+        add_to_report(square.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
+        images.push_back(std::move(square.value().image));
     }
     return Squares{std::move(images), std::move(parts)};
 }

@@ -264,7 +264,7 @@ Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, c
 
 // Encodes an existing geometry image: side*side*3 floats, all x, then all y, then all z; sample (i, j) at j*side + i.
 // Boundary samples within `weld_tolerance` (object units) of each other are glued if that gives a closed surface.
-Result<Encoded> encode_image(const std::vector<float>& planes, uint32_t side, double weld_tolerance,
+Result<Encoded> encode_image(const std::vector<float>& channels, uint32_t side, double weld_tolerance,
                              const EncodeOptions& options, const Progress& progress = {});
 
 }  // namespace gim

@@ -20,39 +20,39 @@ EncodeOptions options_for(RateTarget rate) {
 
 Mesh blob() { return clean(corpus::limbed_blob(24)).value().mesh; }
 
-TEST(ChooseChart, TheChosenImageCostsNoMoreThanTheUsualOne) {
+TEST(ChooseCut, TheChosenImageCostsNoMoreThanTheUsualOne) {
     const Mesh mesh = blob();
     for (const RateTarget rate : {RateTarget{RateTarget::Kind::kPsnr, 40}, RateTarget{RateTarget::Kind::kBytes, 700}}) {
         const EncodeOptions options = options_for(rate);
-        ASSERT_TRUE(may_choose_chart(options));
+        ASSERT_TRUE(may_choose_cut(options));
         StageClock clock({});
-        const auto chosen = choose_chart(mesh, options, clock);
+        const auto chosen = choose_cut(mesh, options, clock);
         ASSERT_TRUE(chosen);
-        const SingleChart usual = make_geometry_image(mesh, options, {}, clock).value();
+        const MadeSquare usual = make_square(mesh, options, {}, clock).value();
         const CodingTrial trial(mesh, options, usual.image);
         EXPECT_LE(trial.log_bytes(chosen->chart.image).value(), trial.log_bytes(usual.image).value());
-        const SingleChart again = make_geometry_image(mesh, options, chosen->preference, clock).value();
+        const MadeSquare again = make_square(mesh, options, chosen->preference, clock).value();
         EXPECT_EQ(again.image.positions, chosen->chart.image.positions);
     }
 }
 
-TEST(ChooseChart, SameChoiceOnOneThread) {
+TEST(ChooseCut, SameChoiceOnOneThread) {
     const Mesh mesh = blob();
     const EncodeOptions options = options_for({RateTarget::Kind::kPsnr, 40});
     StageClock clock({});
-    const auto many = choose_chart(mesh, options, clock);
+    const auto many = choose_cut(mesh, options, clock);
     tbb::task_arena one(1);
-    const auto single = one.execute([&] { return choose_chart(mesh, options, clock); });
+    const auto single = one.execute([&] { return choose_cut(mesh, options, clock); });
     EXPECT_EQ(many->preference, single->preference);
     EXPECT_EQ(many->chart.image.positions, single->chart.image.positions);
 }
 
-TEST(ChooseChart, IsForTargetsThatAFitCanMeet) {
-    EXPECT_FALSE(may_choose_chart(options_for({RateTarget::Kind::kLossless, 0})));
-    EXPECT_FALSE(may_choose_chart(options_for({RateTarget::Kind::kQuality, 50})));
+TEST(ChooseCut, IsForTargetsThatAFitCanMeet) {
+    EXPECT_FALSE(may_choose_cut(options_for({RateTarget::Kind::kLossless, 0})));
+    EXPECT_FALSE(may_choose_cut(options_for({RateTarget::Kind::kQuality, 50})));
     EncodeOptions plain = options_for({RateTarget::Kind::kPsnr, 40});
     plain.fit = FitStrength::kOff;
-    EXPECT_FALSE(may_choose_chart(plain));
+    EXPECT_FALSE(may_choose_cut(plain));
 }
 
 }  // namespace
