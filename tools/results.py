@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables and the plot of what gim reaches, from corpus/results.csv and corpus/rivals.csv.
+"""Writes the tables and the plot of what gim reaches, from the CSV files in corpus/.
 
   python3 tools/results.py           corpus/RESULTS.md, the table of sizes in README.md, spec/rate-distortion.png
   python3 tools/results.py --check   fails if RESULTS.md or README.md are not what the command above would write
@@ -16,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS_CSV = ROOT / "corpus" / "results.csv"
 RIVALS_CSV = ROOT / "corpus" / "rivals.csv"
+SINGLE_RUNS_CSV = ROOT / "corpus" / "single-runs.csv"
 RESULTS_MD = ROOT / "corpus" / "RESULTS.md"
 README = ROOT / "README.md"
 PLOT = ROOT / "spec" / "rate-distortion.png"
@@ -126,7 +127,8 @@ def intro(coder, results):
              "Their bytes and distances are not what the program gives today." if old else "This coder made all rows.")
     return f"""# Results
 
-`tools/results.py` writes this page from [`results.csv`](results.csv) and [`rivals.csv`](rivals.csv). Do not edit it.
+`tools/results.py` writes this page from [`results.csv`](results.csv), [`rivals.csv`](rivals.csv) and
+[`single-runs.csv`](single-runs.csv). Do not edit it.
 `gim_results` writes `results.csv`. `CONTRIBUTING.md` says how.
 
 The coder has version {coder}. {stale}
@@ -244,9 +246,21 @@ checks that each level has the components, boundary loops and genus of the mesh.
 """
 
 
+def single_run_section(coder):
+    lines = [[cells["input"], f"`gim {cells['command']}`",
+              cells["measured"] + (f" {OLD}" if int(cells["coder"]) < coder else "")] for cells in read_table(SINGLE_RUNS_CSV)]
+    return f"""## Single runs
+
+Angles are means over the surface. The dB of colours are those of the sRGB values. Both compare the decoded plane on the decoded surface
+with the input.
+
+{markdown(["input", "command", "measured"], lines)}
+"""
+
+
 def results_page(coder, results, rivals):
     return "\n".join([intro(coder, results), rival_section(results, rivals), lossy_section(results),
-                      lossless_section(results), chart_section(results)])
+                      lossless_section(results), chart_section(results), single_run_section(coder)])
 
 
 # ---- the plot --------------------------------------------------------------------------------------------------------

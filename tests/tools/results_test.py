@@ -26,6 +26,7 @@ class Script(unittest.TestCase):
         self.write("tools/results.py", (ROOT / "tools" / "results.py").read_text(encoding="utf-8"))
         self.write("encoder/include/gim/encoder.h", "inline constexpr uint32_t kCoderVersion = 2;\n")
         self.write("corpus/rivals.csv", "# how\nmodel,bytes_at_60dB,bytes_at_65dB,bytes_at_70dB,bytes_at_75dB\nbunny,1000,2000,,\n")
+        self.write("corpus/single-runs.csv", "input,command,coder,measured\nball,encode,1,\"1,000 bytes\"\n")
         self.write("README.md", "before\n<!-- sizes:begin -->\nold\n<!-- sizes:end -->\nafter\n")
         self.write_results(row("bunny", "file-60-db", 2, 500), row("bunny", "file-65-db", 1, 1500))
 
@@ -46,6 +47,8 @@ class Script(unittest.TestCase):
         self.assertEqual(self.run_script("--no-plot"), 0)
         readme = (self.root / "README.md").read_text(encoding="utf-8")
         self.assertIn("| bunny | 500 / 1,000 = 0.50 | 1,500 † / 2,000 = 0.75 | - | - |", readme)
+        page = (self.root / "corpus" / "RESULTS.md").read_text(encoding="utf-8")
+        self.assertIn("| ball | `gim encode` | 1,000 bytes † |", page)
         self.assertTrue(readme.startswith("before\n") and readme.endswith("after\n"))
 
     def test_the_check_passes_on_what_was_written(self):
