@@ -37,6 +37,8 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
 
     if (options.layout == Layout::kAuto) options.layout = choose_layout(cleaned.mesh, options, clock);
     const LayoutEntry* layout = find_layout(options.layout);
+    if (layout == nullptr)
+        return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim or auto"};
     CutPreferences cuts;  // chosen at the first side, then kept
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Observer& shown) -> Result<Encoded> {
         EncodeReport report = input_report;
