@@ -30,9 +30,9 @@ TEST(ChooseCut, TheChosenImageCostsNoMoreThanTheUsualOne) {
         ASSERT_TRUE(chosen);
         const MadeSquare usual = make_square(mesh, options, {}, clock).value();
         const CodingTrial trial(mesh, options, usual.image);
-        EXPECT_LE(trial.log_bytes(chosen->chart.image).value(), trial.log_bytes(usual.image).value());
+        EXPECT_LE(trial.log_bytes(chosen->square.image).value(), trial.log_bytes(usual.image).value());
         const MadeSquare again = make_square(mesh, options, chosen->preference, clock).value();
-        EXPECT_EQ(again.image.positions, chosen->chart.image.positions);
+        EXPECT_EQ(again.image.positions, chosen->square.image.positions);
     }
 }
 
@@ -44,7 +44,7 @@ TEST(ChooseCut, SameChoiceOnOneThread) {
     tbb::task_arena one(1);
     const auto single = one.execute([&] { return choose_cut(mesh, options, clock); });
     EXPECT_EQ(many->preference, single->preference);
-    EXPECT_EQ(many->chart.image.positions, single->chart.image.positions);
+    EXPECT_EQ(many->square.image.positions, single->square.image.positions);
 }
 
 TEST(ChooseCut, IsForTargetsThatAFitCanMeet) {
