@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "format/close_seams.h"
 #include "format/seam.h"
 #include "tests/format/random_sideband.h"
 
@@ -93,6 +94,17 @@ TEST(Fuse, CorrectionsFadeTowardsTheInsideAndStop) {
     }
     EXPECT_GT(last, 0.0f);
     for (uint32_t depth = width + 1; depth < 32; ++depth) EXPECT_EQ(f.x[(32 * 65 + 64 - depth) * 3], 0.0f);
+}
+
+// The correction falls evenly from the seam to nothing one layer behind the last one.
+TEST(CloseSeams, CorrectionsFormARamp) {
+    for (const uint32_t width : {1u, 4u, 16u}) {
+        float part = 1;
+        for (uint32_t depth = 1; depth <= width; ++depth) {
+            part *= correction_decay(depth, width);
+            EXPECT_NEAR(part, 1 - double(depth) / (width + 1), 1e-5) << depth << " of " << width;
+        }
+    }
 }
 
 TEST(Fuse, SmallImagesKeepTheirMiddle) {
