@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Checks formatting (clang-format 14) and the generated tables, and runs clang-tidy 14 over the tree.
-# Usage: bash tools/lint.sh [--format-only | --fix] [FILE...]     --fix reformats; FILEs limit clang-tidy to these sources
+# Usage: bash tools/lint.sh [--format-only | --fix] [FILE...]
+# --format-only skips clang-tidy. --fix only reformats. FILEs limit clang-tidy to these sources.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 cd "$GIM_ROOT"
@@ -29,5 +30,5 @@ else
     mapfile -t files < <(git ls-files '*.cpp' | grep -vE '^(tests/fuzz|tools/rd)/')
 fi
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p build/release --quiet 2>/dev/null ||
-    die "clang-tidy complains"
+    die "clang-tidy found problems; see above"
 echo "clean: ${#files[@]} files"

@@ -1,4 +1,4 @@
-// gim render: a mesh as a PNG, alone or beside its geometry image and reconstruction.
+// gim render: draws a mesh as a PNG, alone or beside its geometry image and reconstruction.
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
@@ -35,7 +35,8 @@ Result<Picture> triptych(const TriangleMesh& original, const RenderCommand& comm
 }  // namespace
 
 int run_render(const RenderCommand& command) {
-    if (extension_of(command.output) != "png") return report_error(command.output, {Stage::kWrite, "must end in .png"});
+    if (extension_of(command.output) != "png")
+        return report_error(command.output, {Stage::kWrite, "the name must end in .png"});
     const Result<bool> writable = check_writable(command.output);
     if (!writable.ok()) return report_error(command.output, writable.error());
     const Result<TriangleMesh> mesh = read_surface(command.input, command.gim.empty() ? command.level : 0);

@@ -1,4 +1,4 @@
-// The states of an encoding as PNGs (gim encode --debug-dir): the surface with its cut, and the map below it.
+// Draws the states of an encoding as PNGs (gim encode --debug-dir): the surface with its cut, and the map below it.
 #pragma once
 
 #include <string>
@@ -11,13 +11,14 @@ namespace gim {
 
 class StatePictures {
   public:
-    // `folder` is made where it is missing. Its files of earlier runs are overwritten, name by name.
+    // make_folder() makes `folder` if it is missing. Files of the same names are overwritten.
     explicit StatePictures(std::string folder) : folder_(std::move(folder)) {}
 
     Result<bool> make_folder() const;
-    // Draws each state to NN-name.png. The first failure is kept, later states are then left out.
+    // Draws each state to NN-name.png. After the first failure, leaves out later states.
     Observer observer();
-    // strip.png: all states (eight of them, spread, where there are more) from left to right. The first failure of all.
+    // Writes strip.png: all states from left to right, or eight spread over them if there are more. Returns the first
+    // failure of all.
     Result<bool> finish();
 
   private:
