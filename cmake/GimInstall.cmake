@@ -1,7 +1,7 @@
 # Install rules, the exported package (find_package(gim)) and gim-decoder.pc.
 #
-# Two components: `decoder` has no dependency beyond what libgim_decoder links itself; `encoder` and the program come along
-# only where they are built. `cmake --install build --component decoder` installs what an engine embeds and nothing else.
+# Two components. `decoder` depends only on what libgim_decoder links itself. `encoder` and the program are installed
+# only if they are built. `cmake --install build --component decoder` installs what an engine embeds and nothing else.
 option(GIM_INSTALL "Install rules for gim" ${PROJECT_IS_TOP_LEVEL})
 if(NOT GIM_INSTALL)
     return()
@@ -9,7 +9,7 @@ endif()
 include(CMakePackageConfigHelpers)
 set(gim_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gim)
 
-# What the decoder's archive asks of zstd decides what its users need.
+# Users of the decoder need zstd if its archive links zstd.
 get_target_property(gim_decoder_links gim_decoder LINK_LIBRARIES)
 if(gim_decoder_links MATCHES "zstd")
     set(gim_decoder_needs_zstd ON)
@@ -34,7 +34,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/gim-config-version.
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gim-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/gim-config-version.cmake
         DESTINATION ${gim_package_dir} COMPONENT decoder)
 
-# The archives are C++ inside, and a C program has to name its runtime.
+# The archives contain C++, so a C program must link the C++ runtime by name.
 set(gim_pc_runtime "")
 foreach(library IN LISTS CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
     if(library MATCHES "^(stdc\\+\\+|c\\+\\+|m)$")

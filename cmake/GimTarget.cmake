@@ -1,13 +1,13 @@
 # Settings that every target of the project shares.
 #
-# -ffp-contract=off everywhere: decoded samples must be the same bits on every machine, and the encoder judges its own
+# -ffp-contract=off everywhere: decoded samples must be the same bits on every machine, and the encoder measures its own
 # output with the decoder's arithmetic (spec/gim-format.md, "Arithmetic").
 function(gim_target target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_options(${target} PRIVATE
         $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off>)
-    # GCC 12 sees overlaps and overflows inside inlined std::string and std::vector that are not there (GCC bug 105651).
+    # GCC 12 warns of overlaps and overflows in inlined std::string and std::vector that do not exist (GCC bug 105651).
     target_compile_options(${target} PRIVATE
         $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-stringop-overflow>)
     if(GIM_BUILD_FUZZERS)

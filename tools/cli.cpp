@@ -1,4 +1,4 @@
-// The command line: what CLI11 parses, into what the commands take. The help texts are the manual.
+// The command line. CLI11 parses it into the structs that the commands take. The help texts are the manual.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWrongUsage = 2;
 
-// 2^j + 1, as the help says.
+// Accepts 2^j + 1, from least to most.
 CLI::Validator side_validator(uint32_t least, uint32_t most) {
     const auto check = [least, most](const std::string& text) -> std::string {
         uint32_t side = 0;
@@ -54,26 +54,26 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
     sub->add_option("--layout", a.command.options.layout,
-                    "gim: the surface cut open onto one square; mcgim: charts; tiles: a base mesh of quads; auto")
+                    "gim: one square for each component; mcgim: several charts in one rectangle; tiles: a base mesh of "
+                    "quads, not available yet; auto: the encoder chooses gim or mcgim")
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
     a.size =
         sub->add_option("--size", a.command.options.side,
-                        "Samples per side; the next size has four times the samples; without it, 257, or less where "
-                        "that meets --psnr or --bytes better")
+                        "gim: samples per side; the next size has four times the samples. Default: 257, or with --psnr "
+                        "or --bytes a smaller size if its file is better")
             ->check(side_validator(9, 4097));
     sub->add_option("--node-side", a.command.options.node_side,
-                    "Coarsest level that should stay closed: the cut's nodes lie on a grid of this side, or on a finer "
-                    "one where the cut needs it")
+                    "gim: side of the coarsest level that stays closed. The cut's nodes lie on a grid of this side, or "
+                    "on a finer one if the cut needs it")
         ->check(side_validator(3, 4097))
         ->capture_default_str();
-    sub->add_option("--samples", a.command.options.samples, "mcgim: bound on width * height of the image")
+    sub->add_option("--samples", a.command.options.samples, "mcgim: most samples of the image, width * height")
         ->check(CLI::Range(1000, 1 << 26))
         ->capture_default_str();
-    sub->add_option(
-           "--charts", a.command.options.charts,
-           "mcgim: how many charts; a few more come out where the surface asks for them; 0: chosen by the shape")
+    sub->add_option("--charts", a.command.options.charts,
+                    "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
@@ -82,13 +82,13 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
 }
 
 void add_rate_options(CLI::App* sub, EncodeArguments& a) {
-    CLI::Option_group* rate = sub->add_option_group("rate", "How many bytes the samples may take (at most one)");
+    CLI::Option_group* rate = sub->add_option_group("rate", "How many bytes the samples may take (choose at most one)");
     rate->require_option(0, 1);
     rate->add_flag("--lossless", a.lossless, "Keep the quantized image exactly");
-    rate->add_option("--psnr", a.psnr, "At least this PSNR in dB, decoded surface against the mesh")
+    rate->add_option("--psnr", a.psnr, "At least this PSNR in dB, of the decoded surface against the mesh")
         ->check(finite_range(1, 200, "DB"));
     rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
-    rate->add_option("--quality", a.quality, "0 (smallest) to 100 (finest); 10 more halve the quantizer step")
+    rate->add_option("--quality", a.quality, "0 (smallest file) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
 }
 
@@ -99,39 +99,41 @@ void add_fit_options(CLI::App* sub, EncodeArguments& a) {
                                                             {"loose", FitStrength::kLoose}};
     sub->add_option(
            "--fit", a.command.options.fit,
-           "How far samples may move towards the surface: stiff costs hardly any bytes, loose finds creases; auto "
-           "is loose for --lossless, else stiff, and fits lossy squares to their quantizer")
+           "How far samples may move towards the surface. none: not at all; stiff: hardly any more bytes; loose: finds "
+           "creases; auto: loose with --lossless, else stiff. auto also fits lossy squares to their quantizer")
         ->transform(CLI::CheckedTransformer(fits).description(""))
         ->type_name("auto|none|stiff|loose")
         ->default_str("auto");
-    sub->add_flag("--even", a.even, "Spread samples evenly, not denser where the surface curves");
+    sub->add_flag("--even", a.even, "Spread samples evenly. Default: denser where the surface curves");
 }
 
 void add_plane_options(CLI::App* sub, EncodeArguments& a) {
-    sub->add_option("--normals", a.normals, "Side of a normal map of the input, rounded up to 2^j+1; 0: none")
+    sub->add_option("--normals", a.normals,
+                    "Store a normal map of the input with this side, rounded up to 2^j+1. 0: none (default)")
         ->check(CLI::Range(0, 4097))
         ->type_name("N");
     sub->add_option(
            "--colors", a.colors,
-           "Side of the image that takes the input's vertex colours and textures, rounded up to 2^j+1; 0: none; "
-           "without it, about as fine as they are")
+           "Store the input's vertex colours and textures in an image of this side, rounded up to 2^j+1. 0: none. "
+           "Default: about as fine as the input's colours, up to 1025")
         ->check(CLI::Range(0, 4097))
         ->type_name("N");
     sub->add_option(
            "--plane-quality", a.plane_quality,
-           "Quality of normal map and colours, as --quality; without it that of --quality, or 90 for --lossless "
-           "(they are lossy all the same)")
+           "Quality of normal map and colours, 0 to 100 as in --quality. Both are always lossy. Default: the value of "
+           "--quality, 90 with --lossless, 75 with --psnr or --bytes")
         ->check(finite_range(0, 100, "Q"));
 }
 
 void add_encode(CLI::App& app, EncodeArguments& a) {
     CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
     sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB, told apart by content, else by extension. It must be an\n"
-        "orientable surface without non-manifold edges; duplicates are welded and degenerate faces removed first.\n"
-        "Each connected component becomes an image of its own in the file.\n"
-        "A headerless geometry image (planar float32 x, y, z; side from the size) named *.gim is imported as it is.\n"
-        "At most one of --lossless, --psnr, --bytes and --quality; without any, --quality 75.\n\n"
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension.\n"
+        "The surface must be orientable, without non-manifold edges or vertices. gim first welds duplicate vertices\n"
+        "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
+        "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
+        "size tells its side. gim imports it with the parametrization that it has.\n"
+        "Choose at most one of --lossless, --psnr, --bytes and --quality. Default: --quality 75.\n\n"
         "  gim encode bunny.ply bunny.gim\n"
         "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
         "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
@@ -143,7 +145,8 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     add_fit_options(sub, a);
     add_plane_options(sub, a);
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
-    sub->add_option("--threads", a.command.options.threads, "0: all cores; the bytes do not depend on it")
+    sub->add_option("--threads", a.command.options.threads,
+                    "Number of threads, 0: all cores. The bytes do not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     sub->add_option("--json", a.command.json, "Write every figure of the run to this file (-: standard output)")
@@ -151,10 +154,10 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
     sub->add_option("--debug-dir", a.command.debug_folder,
                     "Write pictures of every state to this folder: the cut as it grows, the maps, the samples")
         ->type_name("DIR");
-    sub->add_flag("--quiet", a.command.quiet, "No progress and no summary");
+    sub->add_flag("--quiet", a.command.quiet, "Print no progress and no summary");
 }
 
-// The smallest side that is not below.
+// Returns the smallest side of a plane that is at least `wanted`. 0 stays 0.
 uint32_t plane_side(uint32_t wanted) {
     if (wanted == 0) return 0;
     uint32_t side = 5;
@@ -181,11 +184,11 @@ void apply_rate(EncodeArguments& a) {
 void add_decode(CLI::App& app, DecodeCommand& c) {
     CLI::App* sub = app.add_subcommand("decode", "Turn a .gim file into a mesh or an EXR image");
     sub->footer(
-        "The extension chooses the format. ply, obj, off share the vertices on the cut; glb repeats them with equal\n"
-        "positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z and "
-        "mask.\n"
-        "Colours become vertex colours (ply, obj) or a base-colour texture (glb), a normal map the glb's normal "
-        "texture.\n\n"
+        "The extension chooses the format. ply, obj and off share the vertices on the cut. glb repeats them, with\n"
+        "equal positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z\n"
+        "and mask.\n"
+        "Colours become vertex colours (ply, obj) or the base-colour texture (glb). A normal map becomes the normal\n"
+        "texture (glb).\n\n"
         "  gim decode bunny.gim bunny.ply\n"
         "  gim decode bunny.gim bunny-129.glb --level 1\n"
         "  gim decode bunny.gim bunny.obj --normal-map normals.png --color-map colors.png");
@@ -203,7 +206,8 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
                 return "'" + path + "' must end in .ply, .obj, .off, .stl, .glb or .exr";
             },
             ""));
-    sub->add_option("--level", c.level, "0: full resolution; each next level halves it")->capture_default_str();
+    sub->add_option("--level", c.level, "Level to decode. 0: full resolution; each next level halves the sides")
+        ->capture_default_str();
     const CLI::Validator picture(
         [](const std::string& path) -> std::string {
             const std::string end = path.size() > 4 ? CLI::detail::to_lower(path.substr(path.size() - 4)) : "";
@@ -212,45 +216,47 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
         "FILE");
     sub->add_option(
            "--normal-map", c.normal_map,
-           "Write the normals of the file here, in object space: .png (16 bits, 0 to 65535 is -1 to 1) or .exr; "
-           "of several images FILE-0, FILE-1, ...")
+           "Write the file's normal map here, in object space: .png (16 bits, 0 to 65535 means -1 to 1) or .exr. "
+           "Several images become FILE-0, FILE-1, ...")
         ->check(picture);
-    sub->add_option("--color-map", c.color_map,
-                    "Write the colours of the file here: .png (sRGB) or .exr (linear); with an .obj also OUT.mtl that "
-                    "names it")
+    sub->add_option(
+           "--color-map", c.color_map,
+           "Write the file's colours here: .png (sRGB) or .exr (linear). If OUT is an .obj, also write an .mtl "
+           "beside it that names them")
         ->check(picture);
-    sub->add_flag("--fused", c.fused, "GLB: share the vertices on the cut, leave texture coordinates out");
+    sub->add_flag("--fused", c.fused, "GLB: share the vertices on the cut and leave out texture coordinates");
 }
 
 void add_info(CLI::App& app, InfoCommand& c) {
     CLI::App* sub = app.add_subcommand("info", "Describe a .gim file and check its bytes");
-    sub->footer("Exit status 1 where a chunk is damaged or missing, or the file does not decode.");
+    sub->footer("The exit status is 1 if a chunk is damaged or missing, or if the file does not decode.");
     sub->add_option("IN", c.input, ".gim file to read")->required();
-    sub->add_flag("--json", c.json, "As JSON");
+    sub->add_flag("--json", c.json, "Print JSON");
 }
 
 void add_compare(CLI::App& app, CompareCommand& c) {
     CLI::App* sub = app.add_subcommand("compare", "Measure the distance between two surfaces");
     sub->footer(
-        "Either file may be a mesh or a .gim file. PSNR = 20 log10(diagonal / d): diagonal of the reference's "
-        "bounding\n"
-        "box, d the larger of the two one-way area-weighted RMS distances from points to the other surface.\n"
-        "Normals: the mean angle between the shading normals of area-uniform samples and of the nearest points of the\n"
-        "other surface. Shading normals are interpolated between vertex normals, those the area-weighted means of the\n"
-        "triangles around all vertices at one position; normals in the files do not count.\n"
-        "Vertices at equal positions are joined in formats that cannot share them (STL, glTF), not in others.\n"
+        "Either file may be a mesh or a .gim file.\n"
+        "PSNR = 20 log10(diagonal / d). The diagonal is that of the reference's bounding box. d is the RMS distance\n"
+        "from points of one surface to the other surface, weighted by area: both ways, the larger counts.\n"
+        "Normals: the mean angle between shading normals. Samples are uniform by area, on both surfaces; each is\n"
+        "compared with the nearest point of the other surface. Shading normals are interpolated between vertex\n"
+        "normals. A vertex normal is the area-weighted mean of the triangles around all vertices at its position.\n"
+        "Normals in the files do not count.\n"
+        "Vertices at equal positions are joined only if the format cannot share them (STL, glTF).\n"
         "In JSON, a PSNR of null means that the surfaces are equal.");
-    sub->add_option("REFERENCE", c.reference, "What it should be")->required();
-    sub->add_option("TEST", c.test, "What it is")->required();
-    sub->add_option("--level", c.level, "Level of TEST where it is a .gim file")->capture_default_str();
-    sub->add_option("--samples", c.options.samples, "Surface samples each way")
+    sub->add_option("REFERENCE", c.reference, "Surface to compare with: mesh or .gim file")->required();
+    sub->add_option("TEST", c.test, "Surface to judge: mesh or .gim file")->required();
+    sub->add_option("--level", c.level, "Level to decode if TEST is a .gim file")->capture_default_str();
+    sub->add_option("--samples", c.options.samples, "Samples on each surface")
         ->check(CLI::Range(1000, 100000000))
         ->capture_default_str();
     sub->add_option("--seed", c.options.seed, "Same seed, same figures")->capture_default_str();
-    sub->add_option("--threads", c.options.threads, "0: all cores; the figures do not depend on it")
+    sub->add_option("--threads", c.options.threads, "Number of threads, 0: all cores. The figures do not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    sub->add_flag("--json", c.json, "As JSON");
+    sub->add_flag("--json", c.json, "Print JSON");
 }
 
 void add_render(CLI::App& app, RenderCommand& c) {
@@ -262,19 +268,20 @@ void add_render(CLI::App& app, RenderCommand& c) {
         "  gim render broken.ply look.png --flat --wire --azimuth 200");
     sub->add_option("IN", c.input, "Mesh or .gim file")->required();
     sub->add_option("OUT", c.output, "PNG to write")->required();
-    sub->add_option("--gim", c.gim, "Draw three panels: IN, this file's image (x y z as red green blue), its surface");
-    sub->add_option("--level", c.level, "Level of the .gim file")->capture_default_str();
+    sub->add_option("--gim", c.gim,
+                    "Draw three panels: IN, this file's image (x y z as red green blue) and its surface");
+    sub->add_option("--level", c.level, "Level of the .gim file to draw")->capture_default_str();
     sub->add_option("--size", c.size, "Pixels per side of a panel")->check(CLI::Range(16, 4096))->capture_default_str();
     sub->add_option("--up", c.up, "Axis that points up")
         ->check(CLI::IsMember({"auto", "x", "y", "z"}))
         ->capture_default_str();
-    sub->add_option("--azimuth", c.azimuth, "Degrees, turns the model about the up axis")
+    sub->add_option("--azimuth", c.azimuth, "Turn the model about the up axis, in degrees")
         ->check(finite_range(-360, 360, "DEG"))
         ->capture_default_str();
-    sub->add_option("--elevation", c.elevation, "Degrees, looks down from above")
+    sub->add_option("--elevation", c.elevation, "Look down from above, in degrees")
         ->check(finite_range(-90, 90, "DEG"))
         ->capture_default_str();
-    sub->add_flag("--flat", c.flat, "One normal per triangle");
+    sub->add_flag("--flat", c.flat, "Shade each triangle with one normal");
     sub->add_flag("--wire", c.wire, "Draw the edges");
 }
 
@@ -296,13 +303,13 @@ void print_line(const std::string& text) { std::printf("%s\n", text.c_str()); }
 
 int run_gim(int argc, const char* const* argv) {
     CLI::App app(
-        "gim: triangle meshes as geometry images. A mesh becomes a small .gim file, and the file becomes a\n"
-        "crack-free surface again, at any resolution.");
+        "gim stores triangle meshes as geometry images. It turns a mesh into a small .gim file, and the file into a\n"
+        "crack-free surface, at full resolution or coarser.");
     app.name("gim");
     app.set_version_flag("--version", std::string("gim ") + GIM_VERSION);
     app.require_subcommand(1);
     app.footer(
-        "gim COMMAND --help tells more.\n"
+        "gim COMMAND --help describes a command.\n"
         "Exit status: 0 done, 1 the work failed, 2 wrong usage. Results go to stdout, messages and progress to "
         "stderr.");
     EncodeArguments encode_arguments;
@@ -338,7 +345,8 @@ int run_gim(int argc, const char* const* argv) {
         exit_status = run_render(render_command);
     }
     // A full disk behind a redirected stdout is a failure too.
-    if (std::fflush(stdout) != 0) return report_error("standard output", {Stage::kWrite, "cannot write the results"});
+    if (std::fflush(stdout) != 0)
+        return report_error("standard output", {Stage::kWrite, "cannot write the results; is the disk full?"});
     return exit_status;
 }
 

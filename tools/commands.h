@@ -1,4 +1,4 @@
-// The subcommands of the gim program. Each takes its parsed options and returns the exit status (0 or 1): results go to
+// The subcommands of the gim program. Each takes its parsed options and returns the exit status, 0 or 1. Results go to
 // stdout, errors to stderr.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace gim {
 struct EncodeCommand {
     std::string input, output;
     EncodeOptions options;
-    std::string json;          // empty: none; "-": stdout
+    std::string json;          // file for the report; empty: none; "-": stdout
     std::string debug_folder;  // empty: no pictures
     bool quiet = false;
 };
@@ -42,7 +42,7 @@ int run_compare(const CompareCommand& command);
 
 struct RenderCommand {
     std::string input, output;
-    std::string gim;  // empty: one picture of the input; else a triptych with this file
+    std::string gim;  // .gim file to draw beside the input; empty: only the input
     uint32_t level = 0;
     uint32_t size = 512;  // pixels per side of a panel
     std::string up = "auto";
@@ -55,12 +55,10 @@ int run_render(const RenderCommand& command);
 // Prints "gim: FILE: STAGE: message" on stderr; returns 1.
 int report_error(const std::string& file, const Error& error);
 
-// Prints through printf-like formatting on stdout. Everything that the program says there goes through one of these
-// two.
 std::string with_thousands(uint64_t number);  // 34835 -> "34,835"
-void print_line(const std::string& text);
+void print_line(const std::string& text);     // on stdout
 
-// The whole command line. 0: done, 1: the work failed, 2: wrong usage.
+// Runs the whole command line. Returns the exit status. 0: done, 1: the work failed, 2: wrong usage.
 int run_gim(int argc, const char* const* argv);
 
 }  // namespace gim

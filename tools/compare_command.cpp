@@ -1,4 +1,4 @@
-// gim compare: distances between two surfaces, the angle between their normals, and what holds of their connectivity.
+// gim compare: measures the distances between two surfaces, the angle between their normals, and their connectivity.
 #include <cstdio>
 
 #include "tools/commands.h"
@@ -16,7 +16,7 @@ void print_topology(const char* which, const std::string& path, const TopologySu
     if (t.manifold) {
         std::printf("genus %g, %s\n", t.genus, t.watertight ? "watertight" : "manifold, not closed");
     } else {
-        std::printf("not a manifold (%llu edges, %llu vertices, %llu edges misoriented)\n",
+        std::printf("not a manifold (%llu non-manifold edges, %llu non-manifold vertices, %llu misoriented edges)\n",
                     static_cast<unsigned long long>(t.nonmanifold_edges),
                     static_cast<unsigned long long>(t.nonmanifold_vertices),
                     static_cast<unsigned long long>(t.misoriented_edges));

@@ -1,4 +1,4 @@
-// gim decode: one level of a .gim file as a mesh or as an EXR image; its planes as pictures.
+// gim decode: writes one level of a .gim file as a mesh or an EXR image, and its planes as pictures.
 #include <filesystem>
 #include <utility>
 
@@ -18,7 +18,7 @@ struct OutputFile {
     Bytes bytes;
 };
 
-// Of several images each has its own file: name-0.png, name-1.png, ...
+// Several images get a file each: name-0.png, name-1.png, ...
 std::string path_of_image(const std::string& path, size_t image, size_t count) {
     if (count == 1) return path;
     const std::filesystem::path p(path);
@@ -39,7 +39,7 @@ Result<void> add_planes(Kind kind, const std::string& path, const Images& images
         if (!plane.is_there()) {
             return Error{Stage::kWrite, kind == Kind::kNormals
                                             ? "the .gim file has no normal map; encode it with --normals N"
-                                            : "the .gim file has no colours; encode a mesh that has them"};
+                                            : "the .gim file has no colours; encode a mesh with colours"};
         }
         const std::string name = path_of_image(path, i, images.size());
         Result<Bytes> bytes = write_plane(kind, plane, name);
@@ -49,7 +49,7 @@ Result<void> add_planes(Kind kind, const std::string& path, const Images& images
     return {};
 }
 
-// Materials image0, image1, ... with these textures, named as seen from the folder of the .mtl.
+// Returns an .mtl file with materials image0, image1, ... Its texture paths are relative to its own folder.
 Bytes material_text(const std::string& mtl_path, const std::string& color_path, size_t count) {
     std::string text = "# decoded by gim\n";
     for (size_t i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ int run_decode(const DecodeCommand& command) {
     const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes);
     if (!images.ok()) return report_error(command.input, images.error());
 
-    // Everything is made before anything is written.
+    // Makes all files before it writes the first one.
     std::vector<OutputFile> files;
     if (!command.normal_map.empty()) {
         const Result<void> added = add_planes(Kind::kNormals, command.normal_map, images.value(), files);

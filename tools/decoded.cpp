@@ -11,7 +11,7 @@ Error failed(const std::string& what, gim_status status) {
     return {Stage::kInput, what + ": " + describe_status(status)};
 }
 
-// Nothing where the file has no such plane.
+// Leaves `plane` empty if the file has no such plane.
 gim_status decode_plane(Decoder& decoder, uint32_t image, uint32_t kind, ImagePlane* plane) {
     DecoderPlane shape;
     const gim_status status = decoder.read_plane(image, kind, 0, &shape);
@@ -23,7 +23,7 @@ gim_status decode_plane(Decoder& decoder, uint32_t image, uint32_t kind, ImagePl
     return decoder.plane(shape, plane->values);
 }
 
-// The level, or the coarsest one that the image has.
+// Decodes the level, or the coarsest one if the image has no such level.
 gim_status decode_image(Decoder& decoder, uint32_t index, uint32_t level, DecodedImage* image) {
     DecoderLevel shape;
     gim_status status = decoder.read_level(index, 0, &shape);

@@ -1,4 +1,4 @@
-// What a .gim file gives back, in the shapes that the writers, `compare` and `render` want.
+// A decoded .gim file, in the form that the writers, `compare` and `render` take.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace gim {
 
-// An attribute plane of one image; its side is its own.
+// An attribute plane of one image. Its side may differ from the image's.
 struct ImagePlane {
     uint32_t columns = 0, rows = 0;  // 0: the file has none
     std::vector<float> values;       // columns*rows*3, row-major
@@ -19,7 +19,7 @@ struct ImagePlane {
     bool is_there() const { return columns > 0; }
 };
 
-// One level of one image. `grid` is the image itself; the mesh is the same surface with its seams closed.
+// One level of one image. `grid` is the image itself. The mesh is the same surface with closed seams.
 struct DecodedImage {
     uint32_t columns = 0, rows = 0;
     uint32_t level = 0;
@@ -32,7 +32,7 @@ struct DecodedImage {
     std::vector<float> texcoords;          // 2 each
     ImagePlane normal_map;                 // object space, unit length
     ImagePlane colors;                     // sRGB, 0..1
-    std::vector<uint32_t> triangles;       // the same triangles in the same order, index fused vertices
+    std::vector<uint32_t> triangles;       // index fused vertices; the order is that of grid_triangles
 
     bool is_defined(size_t sample) const { return grid[3 * sample] == grid[3 * sample]; }
 };
@@ -43,21 +43,21 @@ struct GridMesh {
     std::vector<uint32_t> triangles;  // index vertices
 };
 GridMesh grid_mesh(const DecodedImage& image);
-// Of each vertex, `width` values of a sample.
+// Returns `width` values for each vertex, those of its sample.
 std::vector<float> at_samples(const GridMesh& mesh, const std::vector<float>& values, size_t width);
 
-// All images of a file at one level; an image that cannot be so coarse gives its coarsest level.
-// Fails with kNoSuchLevel's message where no image has the level. Planes, if wanted, come at full resolution whatever the level.
+// Decodes all images of a file at one level. An image without that level gives its coarsest one. Fails with the text of
+// GIM_NO_SUCH_LEVEL if no image has the level. Planes always have full resolution.
 enum class WithPlanes { kNo, kYes };
 Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes = WithPlanes::kNo);
 
 // All images as one mesh with shared vertices.
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images);
 
-// Words for a status of the decoder, with advice.
+// Describes a status of the decoder and says what to do.
 std::string describe_status(gim_status status);
 
-// Whether the bytes begin like a .gim file of ours.
+// True if the bytes begin like a .gim file with a header.
 bool is_gim(const Bytes& file);
 
 }  // namespace gim

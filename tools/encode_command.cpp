@@ -16,7 +16,7 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
     switch (input.kind) {
         case Input::Kind::kGim:
             return Error{Stage::kInput,
-                         "is a .gim file already; decode it first (gim decode IN.gim OUT.ply), then encode the mesh"};
+                         "this is already a .gim file; decode it (gim decode IN.gim OUT.ply) and encode the mesh"};
         case Input::Kind::kRawImage:
             return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
                                 progress);
@@ -93,7 +93,7 @@ Result<void> write_json(const std::string& path, const std::string& text) {
 }  // namespace
 
 int run_encode(const EncodeCommand& command) {
-    // Minutes of work should not end at a folder that does not exist.
+    // Checks this before minutes of work.
     for (const std::string& path : {command.output, command.json}) {
         if (path.empty() || path == "-") continue;
         const Result<void> writable = check_writable(path);

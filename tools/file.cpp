@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::string reason(int error) { return std::generic_category().message(error); }
 
 Error cannot_write(const std::string& what) {
-    return {Stage::kWrite, "cannot write: " + what + "; choose a folder that exists and that you may write to"};
+    return {Stage::kWrite, "cannot write: " + what + "; choose an existing folder that you may write to"};
 }
 
 // A file descriptor that closes itself.
@@ -51,7 +51,7 @@ bool write_all(int fd, std::span<const uint8_t> bytes) {
     return true;
 }
 
-// Where the bytes really go: the end of a chain of symbolic links.
+// Follows symbolic links to the file that receives the bytes.
 fs::path target_of(const std::string& path) {
     std::error_code ignored;
     const fs::path resolved = fs::weakly_canonical(path, ignored);
@@ -62,7 +62,7 @@ fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? t
 
 std::string temporary_beside(const fs::path& target) { return (folder_of(target) / ".gim-XXXXXX").string(); }
 
-// mkstemp makes private files; ours get what the user's umask asks for, or what the replaced file had.
+// Returns the mode of the file to replace, else the mode that the umask gives. mkstemp alone makes private files.
 mode_t final_mode(const fs::path& target) {
     struct stat info = {};
     if (::stat(target.c_str(), &info) == 0) return info.st_mode & 07777U;
@@ -81,11 +81,11 @@ Result<void> write_in_place(const fs::path& target, std::span<const uint8_t> byt
 
 Result<Bytes> read_file(const std::string& path) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) return Error{Stage::kInput, "is a folder; name a file"};
+    if (fs::is_directory(path, ignored)) return Error{Stage::kInput, "this is a folder; name a file"};
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.get() < 0) return Error{Stage::kInput, "cannot be opened: " + reason(errno)};
+    if (file.get() < 0) return Error{Stage::kInput, "the file cannot be opened: " + reason(errno)};
 
-    // The size is only a hint: pipes have none.
+    // The size is only a hint, because pipes have none.
     Bytes bytes;
     struct stat info = {};
     if (::fstat(file.get(), &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(static_cast<size_t>(info.st_size) + 1);
@@ -94,7 +94,7 @@ Result<Bytes> read_file(const std::string& path) {
         if (used == bytes.size()) bytes.resize(std::max(bytes.capacity(), used + (size_t{1} << 16)));
         const ssize_t n = ::read(file.get(), bytes.data() + used, bytes.size() - used);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return Error{Stage::kInput, "cannot be read: " + reason(errno)};
+        if (n < 0) return Error{Stage::kInput, "the file cannot be read: " + reason(errno)};
         if (n == 0) break;
         used += static_cast<size_t>(n);
     }
@@ -112,7 +112,7 @@ Result<void> check_writable(const std::string& path) {
     }
     const fs::path folder = folder_of(target);
     if (!fs::is_directory(folder, error)) return cannot_write("there is no folder '" + folder.string() + "'");
-    // Asking (access) lies to root and on some network folders; a file made and removed does not.
+    // Makes a file and removes it, because access() is wrong for root and on some network folders.
     std::string name = temporary_beside(target);
     const Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
     if (file.get() < 0) return cannot_write(reason(errno));

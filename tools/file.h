@@ -1,4 +1,4 @@
-// Whole files in, whole files out. Writing is all or nothing: readers of the path see the old file or the complete new
+// Reads and writes whole files. Writing is all or nothing: readers of the path see the old file or the complete new
 // one.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace gim {
 
 using Bytes = std::vector<uint8_t>;
 
-// The whole file. Errors say why the system refused.
+// Reads the whole file. Errors give the system's reason.
 Result<Bytes> read_file(const std::string& path);
 
 // Tells early, before minutes of work, whether write_file can succeed: the folder exists and takes new files, and the
@@ -24,7 +24,7 @@ Result<void> check_writable(const std::string& path);
 // file. A path that is no regular file (/dev/null, a pipe) is written in place. Symbolic links are followed.
 Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes);
 
-// Extension in lower case without the dot; empty where there is none.
+// Returns the extension in lower case without the dot. Empty if there is none.
 std::string extension_of(const std::string& path);
 
 }  // namespace gim

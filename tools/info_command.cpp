@@ -1,4 +1,4 @@
-// gim info: what a .gim file holds, and whether its bytes are whole.
+// gim info: describes a .gim file and checks its bytes.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -26,8 +26,8 @@ struct Description {
     uint64_t actual_size = 0;
     std::vector<Image> images;
     std::vector<gim_chunk> chunks;
-    std::string text;                   // what the file says about itself; usually nothing
-    std::vector<std::string> problems;  // empty: everything is in order
+    std::string text;                   // the file's note about itself; usually empty
+    std::vector<std::string> problems;  // empty: the file is in order
 };
 
 const char* layout_name(uint32_t layout) {
@@ -82,14 +82,14 @@ void add_text(Decoder& decoder, Description& d) {
     uint64_t size = 0;
     gim_status status = decoder.read_text_size(&size);
     if (status == GIM_OK && size > kMostText) {
-        d.problems.push_back("its text claims " + std::to_string(size) + " bytes");
+        d.problems.push_back("its text claims " + std::to_string(size) + " bytes; gim reads at most 1 MiB of text");
         return;
     }
     if (status == GIM_OK && size > 0) {
         d.text.resize(size);
         status = decoder.text(d.text);
     }
-    // It comes from anywhere: nothing of it may steer a terminal.
+    // The text comes from strangers. It must not control the terminal.
     for (char& c : d.text) {
         if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F) c = '?';
     }
@@ -116,10 +116,10 @@ Result<Description> describe(const Bytes& file) {
     }
     if (damaged > 0) {
         d.problems.push_back(std::to_string(damaged) + " of " + std::to_string(d.chunks.size()) +
-                             " chunks are damaged or missing");
+                             " chunks are damaged or missing; get a fresh copy");
     }
     if (d.actual_size != d.info.file_size) {
-        d.problems.push_back("the index tells of " + std::to_string(d.info.file_size) + " bytes, the file has " +
+        d.problems.push_back("the index counts " + std::to_string(d.info.file_size) + " bytes, but the file has " +
                              std::to_string(d.actual_size));
     }
     if (damaged == 0) add_text(decoder, d);
@@ -204,7 +204,7 @@ void print_text(const std::string& path, const Description& d) {
                 info.image_count, info.image_count == 1 ? "" : "s", with_thousands(info.sample_count).c_str(),
                 bits_per_sample(info));
     if (info.level_psnr[0] > 0) {
-        std::printf("  measured by the encoder, in dB:");
+        std::printf("  PSNR in dB, measured by the encoder:");
         for (uint32_t level = 0; level < info.level_count && info.level_psnr[level] > 0; ++level) {
             std::printf("%s level %u %.1f", level > 0 ? "," : "", level, static_cast<double>(info.level_psnr[level]));
         }

@@ -15,9 +15,10 @@ Result<RawImage> read_raw_image(const Bytes& bytes) {
     const size_t samples = bytes.size() / kSampleSize;
     image.side = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(samples))));
     if (bytes.empty() || size_t{image.side} * image.side * kSampleSize != bytes.size()) {
-        return Error{Stage::kInput, "neither a .gim file (the magic number is missing) nor a headerless float image (" +
-                                        std::to_string(bytes.size()) +
-                                        " bytes are not 12 * side * side for any side); get a fresh copy"};
+        return Error{Stage::kInput,
+                     "this is neither a .gim file (the magic number is missing) nor a headerless float image (" +
+                         std::to_string(bytes.size()) +
+                         " bytes are not 12 * side * side for any side); get a fresh copy"};
     }
     image.channels.resize(bytes.size() / sizeof(float));
     std::memcpy(image.channels.data(), bytes.data(), bytes.size());

@@ -1,4 +1,4 @@
-// What a path given on the command line turns out to hold.
+// Reads a file named on the command line, whatever it holds.
 #pragma once
 
 #include <string>
@@ -10,19 +10,20 @@
 
 namespace gim {
 
-// A headerless geometry image of other people: side*side*3 float32, planar (all x, all y, all z).
+// A headerless geometry image of another program: side*side*3 float32, all x, then all y, then all z.
 struct RawImage {
     uint32_t side = 0;
     std::vector<float> channels;
 };
 
-// Of a file named *.gim that is none of ours. The size must be 12 * side * side bytes.
+// Reads a file named *.gim that has no header. Its size must be 12 * side * side bytes.
 Result<RawImage> read_raw_image(const Bytes& bytes);
 
-// Neighbouring samples joined to triangles (shorter diagonal), boundaries left apart.
+// Joins neighbouring samples to triangles along the shorter diagonal. Leaves boundaries apart.
 TriangleMesh to_mesh(const RawImage& image);
 
-// Samples on both sides of a cut differ by rounding only; this much of the bounding box's diagonal is one point.
+// Samples on the two sides of a cut differ only by rounding. Samples nearer than this part of the bounding box's
+// diagonal are one point.
 inline constexpr double kRawWeldTolerance = 2e-6;
 double diagonal_of(const RawImage& image);
 
@@ -33,14 +34,15 @@ struct Input {
     TriangleMesh mesh;                         // kMesh only
     RawImage raw;                              // kRawImage only
     Bytes bytes;                               // kGim only
-    std::vector<std::string> warnings;         // textures that are missing
+    std::vector<std::string> warnings;         // one per missing texture
 };
 
 // Reads the file and decides by content, then by extension.
 enum class Want { kShape, kShapeAndColors };
 Result<Input> read_input(const std::string& path, Want want = Want::kShape);
 
-// Any of the three as a mesh for comparing and drawing: a .gim decoded at `level`; formats that repeat vertices welded.
+// Returns any of the three as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
+// formats that repeat them.
 Result<TriangleMesh> read_surface(const std::string& path, uint32_t level);
 
 }  // namespace gim

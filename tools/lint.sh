@@ -74,5 +74,5 @@ else
     mapfile -t files < <(git ls-files '*.cpp' | grep -vE '^(tests/fuzz|tools/rd)/')
 fi
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p build/release --quiet 2>/dev/null ||
-    die "clang-tidy complains"
+    die "clang-tidy found problems; see above"
 echo "clean: ${#files[@]} files"

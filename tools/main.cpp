@@ -5,11 +5,11 @@
 #include "tools/commands.h"
 
 int main(int argc, char** argv) {
-    // Nothing throws in normal work; what the system refuses (memory) must still end with a message and status 1.
+    // Nothing throws in normal work. If memory runs out, the program must still end with a message and status 1.
     try {
         return gim::run_gim(argc, argv);
     } catch (const std::bad_alloc&) {
-        std::fputs("gim: out of memory; try a smaller --size or mesh\n", stderr);
+        std::fputs("gim: out of memory; use a smaller --size or a smaller mesh\n", stderr);
     } catch (const std::exception& failure) {
         std::fprintf(stderr, "gim: unexpected failure: %s\n", failure.what());
     }

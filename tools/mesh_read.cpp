@@ -76,7 +76,7 @@ Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std
         case MeshFormat::kUnknown:
             break;
     }
-    return Error{Stage::kInput, "neither its name nor its content is PLY, OBJ, OFF, STL, glTF or GLB"};
+    return Error{Stage::kInput, "neither its content nor its name is that of PLY, OBJ, OFF, STL, glTF or GLB"};
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format
 }
 
 TriangleMesh weld_equal_positions(const TriangleMesh& mesh) {
-    // Sorted by position (as bits, so that not-a-number has a place too), ties by index: the first of equal ones leads.
+    // Sorts by position as bits, so that not-a-number has a place too. The first of equal vertices leads.
     std::vector<uint32_t> order(mesh.positions.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto bits = [&](uint32_t v) {

@@ -1,13 +1,13 @@
 // Reads triangle meshes: PLY (ascii, binary of either byte order), OBJ, OFF, STL (ascii, binary), glTF 2 and GLB.
 //
-// The text and the simple binary formats have readers of our own, because OpenMesh's (9.0, also behind a custom
-// importer that bypasses its half-edges) lose what the encoder needs: coordinates pass through float (4300000.125
-// becomes 4300000), a "nan" in a text file turns the rest of it into zeros or stale indices without an error, STL drops
-// degenerate and merges equal vertices, and a header that claims 2^31 elements aborts the program. glTF goes through
-// tinygltf. OpenMesh is the tests' second opinion on the files that gim writes.
+// The text and the simple binary formats have readers of our own. OpenMesh 9.0 loses what the encoder needs, even with
+// a custom importer that bypasses its half-edges. Its coordinates pass through float (4300000.125 becomes 4300000). A
+// "nan" in a text file turns the rest of it into zeros or stale indices without an error. Its STL reader drops
+// degenerate triangles and merges equal vertices. A header that claims 2^31 elements aborts the program. glTF goes
+// through tinygltf. The tests read the files that gim writes with OpenMesh, as a second opinion.
 //
-// Every vertex and face is kept in file order, faces with more than three corners are triangulated, non-finite
-// coordinates are kept for the cleaning stage to report. No reader allocates more than a small multiple of the file's
+// Readers keep every vertex and face in file order and cut faces with more than three corners into triangles. They keep
+// non-finite coordinates; the cleaning stage reports them. No reader allocates more than a small multiple of the file's
 // size.
 #pragma once
 
@@ -22,30 +22,29 @@ namespace gim {
 
 enum class MeshFormat { kUnknown, kPly, kObj, kOff, kStl, kGltf };
 
-// By content where it tells, else by extension (lower case, without dot).
+// Detects the format by content, else by extension (lower case, without dot).
 MeshFormat detect_format(std::span<const uint8_t> bytes, std::string_view extension);
 
 // "PLY", "OBJ", ...
 std::string_view format_name(MeshFormat format);
 
-// STL always and glTF where attributes differ repeat one surface point as several vertices; the others need not.
+// True if the format repeats one surface point as several vertices: STL always, glTF where attributes differ.
 bool repeats_vertices(MeshFormat format);
 
-// Messages do not name the file (the caller does); they begin with "not a mesh that gim can read: ".
-// `folder` is where a .gltf finds its buffers. `textures`: takes warnings, and textures until they are the mesh's; nullptr:
-// only the shape is wanted, colours and textures are left out.
+// Messages begin with "not a mesh that gim can read: ". The caller names the file. `folder` holds the buffers of a
+// .gltf. `textures` takes warnings, and the textures until the mesh gets them; nullptr: read only the shape.
 Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder,
                                Textures* textures = nullptr);
 
-// One function per format, in read_*.cpp. Messages without the common beginning.
+// One function per format, in read_*.cpp. Their messages lack the common beginning.
 Result<TriangleMesh> read_ply(std::string_view text, Textures* textures);
 Result<TriangleMesh> read_obj(std::string_view text, Textures* textures);
 Result<TriangleMesh> read_off(std::string_view text);
 Result<TriangleMesh> read_stl(std::string_view text);
 Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder, Textures* textures);
 
-// Vertices at exactly equal positions become one (the first), triangles that collapse by it are dropped: two samples that fell
-// on one quantized point are an edge of length zero, not a hole. Order is kept. O(V log V).
+// Merges vertices at exactly equal positions into the first of them and drops triangles that collapse. So two samples
+// on one quantized point become an edge of length zero, not a hole. Keeps the order. O(V log V).
 TriangleMesh weld_equal_positions(const TriangleMesh& mesh);
 
 }  // namespace gim

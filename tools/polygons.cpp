@@ -8,14 +8,14 @@ namespace {
 
 using Point2 = std::array<double, 2>;
 
-// Ear clipping costs up to O(n^3); beyond this many corners a fan must do.
+// Ear clipping costs up to O(n^3). A face with more corners than this becomes a fan.
 constexpr size_t kMaxClippedCorners = 256;
 
 double cross(const Point2& a, const Point2& b, const Point2& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// The face seen along its mean normal (Newell), so that its outline runs counter-clockwise.
+// Projects the face along the main axis of its mean normal (Newell), so that its outline runs counter-clockwise.
 std::vector<Point2> flatten(const std::vector<std::array<double, 3>>& positions, std::span<const uint32_t> face) {
     std::array<double, 3> normal = {};
     for (size_t i = 0; i < face.size(); ++i) {
@@ -25,7 +25,7 @@ std::vector<Point2> flatten(const std::vector<std::array<double, 3>>& positions,
             normal[k] += (a[(k + 1) % 3] - b[(k + 1) % 3]) * (a[(k + 2) % 3] + b[(k + 2) % 3]);
         }
     }
-    size_t axis = 0;  // the largest component: dropping it distorts least
+    size_t axis = 0;  // of the largest component; dropping it distorts least
     for (size_t k = 1; k < 3; ++k) {
         if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
     }
@@ -44,7 +44,7 @@ bool is_convex(const std::vector<Point2>& flat) {
     return true;
 }
 
-// Whether cutting corner i off leaves the outline whole: the corner is convex and no other corner lies in its triangle.
+// True if corner i can be cut off: it is convex, and no other corner lies in its triangle.
 bool is_ear(const std::vector<Point2>& flat, const std::vector<size_t>& left, size_t i) {
     const size_t n = left.size();
     const size_t ia = left[(i + n - 1) % n];
@@ -62,7 +62,7 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<size_t>& left, si
     return true;
 }
 
-// Three corners of a face, counted within it.
+// Three corners of a face, as indices into the face.
 using LocalTriangle = std::array<uint32_t, 3>;
 
 void clip_ears(const std::vector<Point2>& flat, std::vector<LocalTriangle>& triangles) {
@@ -91,7 +91,7 @@ void cut_face(const std::vector<std::array<double, 3>>& positions, std::span<con
     for (uint32_t i = 2; i < face.size(); ++i) triangles.push_back({0, i - 1, i});
 }
 
-// Colours of the triangle made of these corners of a face. first: that of the face in soup.corners.
+// Adds the colours of the triangle with these corners of face f. first: index of the face in soup.corners.
 void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const LocalTriangle& local,
                     const std::array<uint32_t, 3>& triangle, Appearance& appearance) {
     const uint32_t texture = soup.face_texture.empty() ? UINT32_MAX : soup.face_texture[f];
@@ -119,7 +119,7 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> tex
 
     TriangleMesh mesh;
     mesh.triangles.reserve(soup.sizes.size());
-    // Texture coordinates without a texture say nothing.
+    // Texture coordinates without a texture have no use.
     if (std::all_of(soup.face_texture.begin(), soup.face_texture.end(), [](uint32_t t) { return t == UINT32_MAX; })) {
         soup.face_texture.clear();
         soup.corner_texcoords.clear();

@@ -16,11 +16,11 @@ struct PolygonSoup {
     std::vector<int64_t> corners;  // of all faces, one after the other; unchecked
     std::vector<uint32_t> sizes;   // corners per face
 
-    // Colours, as gim/encoder.h has them; each is empty or complete.
+    // Colours as in gim/encoder.h. Each array is empty or complete.
     std::vector<std::array<float, 3>> vertex_colors;
-    std::vector<std::array<float, 2>> corner_texcoords;  // as `corners`
+    std::vector<std::array<float, 2>> corner_texcoords;  // one per entry of `corners`
     std::vector<uint32_t> face_texture;                  // index of a texture or UINT32_MAX
-    bool colors_tint_textures = false;                   // else a textured face has no vertex colours
+    bool colors_tint_textures = false;                   // false: textured faces ignore vertex colours
 
     void add_face(std::span<const int64_t> face) {
         corners.insert(corners.end(), face.begin(), face.end());
@@ -28,10 +28,10 @@ struct PolygonSoup {
     }
 };
 
-// Keeps every vertex and every face in the file's order: triangles as they are (also degenerate and repeated ones:
-// cleaning them is the encoder's task), larger faces cut into triangles inside their outline. An error names the first
-// face that has fewer than three corners or a corner that is no vertex, and the first files without any face.
-// `textures`: what face_texture counts; they become the mesh's.
+// Keeps every vertex and every face in the file's order. Cuts larger faces into triangles inside their outline. Keeps
+// degenerate and repeated triangles, because the encoder cleans them. Fails without vertices or faces. Otherwise an
+// error names the first face that has fewer than three corners or a corner that is not a vertex. face_texture indexes
+// `textures`; the mesh gets them.
 Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures = {});
 
 }  // namespace gim

@@ -8,7 +8,7 @@
 namespace gim {
 namespace {
 
-constexpr std::chrono::milliseconds kPause(100);  // between two prints of one stage
+constexpr std::chrono::milliseconds kPause(100);  // between two updates of one stage
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 

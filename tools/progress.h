@@ -1,4 +1,4 @@
-// One line on stderr per stage, while it runs and when it is done. Silent unless stderr is a terminal.
+// Prints one line per stage on stderr, while it runs and when it is done. Silent unless stderr is a terminal.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ class ProgressPrinter {
     ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
     void update(Stage stage, double fraction);
-    // What the encoder wants; empty where nothing is to be printed. Must not outlive the printer.
+    // The callback for the encoder. Empty if there is nothing to print. Must not outlive the printer.
     Progress callback();
 
   private:

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 (git and apt) to a picture: installs what is missing, builds, takes the Stanford bunny through
-# encode, decode, compare and render. May be run again; then it only does what is left to do.
-# Usage: bash tools/quickstart.sh
+# Goes from a fresh Debian 12 (with git and apt) to a picture: installs missing packages, builds, and runs encode,
+# decode, compare and render on the Stanford bunny. A second run does not install or build again. Usage: bash
+# tools/quickstart.sh
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 readonly OUT="$GIM_ROOT/out/quickstart"
 readonly PACKAGED_BUNNY=usr/share/glmark2/models/bunny.obj
 
-# Prints the path of a bunny, or fails. The package's data is enough, so it is unpacked, not installed.
+# Prints the path of the bunny, or fails. Unpacks the package without installing it, because its data is enough.
 find_bunny() {
     local path
     for path in "/$PACKAGED_BUNNY" "$OUT/package/$PACKAGED_BUNNY"; do
@@ -33,7 +33,7 @@ say "Looking for the Stanford bunny"
 if mesh=$(find_bunny); then
     echo "$mesh"
 else
-    echo "The bunny (Debian package glmark2-data) cannot be had here; a generated mesh stands in."
+    echo "The bunny (Debian package glmark2-data) is not available. A generated mesh takes its place."
     mesh="$OUT/limbs-rough.ply"
     gim_corpus limbs-rough "$mesh"
 fi

@@ -1,7 +1,7 @@
-// glTF 2: every triangle primitive of every mesh instance of the scene, in world coordinates (node transforms applied).
-// Where colours are wanted: COLOR_0, base-colour texture (without texture transforms) and base-colour factor.
-// Points and lines are skipped; skins and morph targets stay in their rest pose. Compressed files (Draco, meshopt) and
-// sparse accessors are refused with a message.
+// glTF 2. Reads every triangle primitive of every mesh instance of the scene, in world coordinates (node transforms
+// applied). If colours are wanted, also COLOR_0, base-colour texture (without texture transforms) and base-colour
+// factor. Skips points and lines. Skins and morph targets stay in their rest pose. Refuses compressed files (Draco,
+// meshopt) and sparse accessors with a message.
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
@@ -97,7 +97,7 @@ float to_srgb(double x) {
     return static_cast<float>(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
 }
 
-// The values of an attribute, `width` numbers of each vertex; empty where the primitive does not have it.
+// Returns the values of an attribute, `width` numbers for each vertex. Empty if the primitive does not have it.
 std::vector<double> attribute(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                               const std::string& name, size_t vertices, size_t width) {
     std::vector<double> values;
@@ -105,7 +105,8 @@ std::vector<double> attribute(const tinygltf::Model& model, const tinygltf::Prim
     if (found == primitive.attributes.end()) return values;
     const tinygltf::Accessor& accessor = accessor_of(model, found->second);
     const int numbers = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
-    if (accessor.count != vertices || numbers < static_cast<int>(width)) throw Failure(name + " does not fit POSITION");
+    if (accessor.count != vertices || numbers < static_cast<int>(width))
+        throw Failure(name + " does not match POSITION in count or type");
     size_t stride = 0;
     const char* bytes = at(model, accessor, stride);
     const size_t size =
@@ -119,19 +120,19 @@ std::vector<double> attribute(const tinygltf::Model& model, const tinygltf::Prim
     return values;
 }
 
-// Image files as tinygltf hands them over, decoded when they are asked for.
+// Keeps image files as tinygltf hands them over. Decodes one when it is first needed.
 class Pictures {
   public:
     explicit Pictures(Textures* textures) : textures_(textures) {}
 
-    // nullptr: colours are not wanted.
+    // Returns nullptr if colours are not wanted.
     Textures* textures() const { return textures_; }
     void keep(int image, const unsigned char* bytes, int size) {
         if (!textures_ || image < 0 || image > 65535) return;
         if (files_.size() <= static_cast<size_t>(image)) files_.resize(static_cast<size_t>(image) + 1);
         files_[static_cast<size_t>(image)].assign(bytes, bytes + size);
     }
-    // The texture of glTF's number; kNoTexture with a warning where it is missing.
+    // Returns the texture of this glTF index. kNoTexture if it is missing, with a warning if its image is.
     uint32_t load(const tinygltf::Model& model, int texture) {
         if (texture < 0 || static_cast<size_t>(texture) >= model.textures.size()) return Textures::kNoTexture;
         const int image = model.textures[static_cast<size_t>(texture)].source;
@@ -152,7 +153,7 @@ class Pictures {
     std::vector<std::pair<int, uint32_t>> loaded_;
 };
 
-// Colours of a primitive's vertices. What it has of its own goes on top of what the soup has of the primitives before.
+// Texture and texture coordinates of a primitive. Its vertex colours go straight into the soup.
 struct PrimitiveColors {
     uint32_t texture = Textures::kNoTexture;
     std::vector<std::array<float, 2>> texcoords;  // per vertex; empty without texture
@@ -207,7 +208,7 @@ void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& prim
     const auto found = primitive.attributes.find("POSITION");
     if (found == primitive.attributes.end()) return;
     const tinygltf::Accessor& points = accessor_of(model, found->second);
-    if (points.type != TINYGLTF_TYPE_VEC3) throw Failure("POSITION is no vector of three");
+    if (points.type != TINYGLTF_TYPE_VEC3) throw Failure("POSITION is not a vector of three numbers");
 
     const auto base = static_cast<int64_t>(soup.positions.size());
     size_t stride = 0;
@@ -225,12 +226,12 @@ void add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& prim
     std::vector<int64_t> corners;
     if (primitive.indices >= 0) {
         const tinygltf::Accessor& indices = accessor_of(model, primitive.indices);
-        if (indices.type != TINYGLTF_TYPE_SCALAR) throw Failure("indices are no scalars");
+        if (indices.type != TINYGLTF_TYPE_SCALAR) throw Failure("the indices are not scalars");
         const char* index = at(model, indices, stride);
         corners.reserve(indices.count);
         for (size_t i = 0; i < indices.count; ++i, index += stride) {
             const auto corner = static_cast<int64_t>(component(index, indices.componentType, false));
-            // Checked here: seen over all primitives together it might be another one's vertex.
+            // Checked here, because in the soup a wrong index may be a vertex of another primitive.
             if (corner < 0 || static_cast<uint64_t>(corner) >= points.count) {
                 throw Failure("an index is " + std::to_string(corner) + ", but its primitive has only " +
                               std::to_string(points.count) + " vertices");
@@ -288,7 +289,7 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
     return roots;
 }
 
-// Accepts pictures unseen.
+// Keeps the bytes of an image without decoding them.
 bool keep_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
                 int size, void* pictures) {
     static_cast<Pictures*>(pictures)->keep(index, bytes, size);
@@ -300,7 +301,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 }  // namespace
 
 Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder, Textures* textures) {
-    if (text.size() > UINT32_MAX) return Error{Stage::kInput, "glTF files end at 4 GB"};
+    if (text.size() > UINT32_MAX) return Error{Stage::kInput, "glTF files may have at most 4 GB; convert it to PLY"};
     try {
         tinygltf::TinyGLTF loader;
         Pictures pictures(textures);
@@ -321,9 +322,9 @@ Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder,
         for (const int root : root_nodes(model)) {
             add_node(model, root, Eigen::Affine3d::Identity(), 0, pictures, soup);
         }
-        if (soup.positions.empty()) return Error{Stage::kInput, "its scene shows no triangles"};
+        if (soup.positions.empty()) return Error{Stage::kInput, "its scene has no triangles"};
         if (!textures) return triangulate(std::move(soup));
-        // White says nothing.
+        // All white is the same as no colours.
         if (std::all_of(soup.vertex_colors.begin(), soup.vertex_colors.end(), [](const auto& c) {
                 return c == std::array<float, 3>{1, 1, 1};
             })) {

@@ -1,5 +1,5 @@
-// Wavefront OBJ: "v" and "f" lines; where colours are wanted also "vt", the colours that some programs append to "v", and the
-// map_Kd textures of materials. Everything else (normals, groups, plain material colours) is skipped.
+// Wavefront OBJ. Reads "v" and "f" lines. If colours are wanted, also "vt", the colours that some programs append to
+// "v", and the map_Kd textures of materials. Skips everything else (normals, groups, plain material colours).
 #include <algorithm>
 #include <array>
 #include <string>
@@ -20,7 +20,7 @@ struct Material {
     uint32_t texture = Textures::kNoTexture;
 };
 
-// Materials with a texture of an .mtl file.
+// Reads the materials of an .mtl file that have a texture.
 void read_materials(std::string_view file_name, Textures& textures, std::vector<Material>& materials) {
     const std::string text = textures.read_text(file_name);
     TextScanner in(text);
@@ -37,7 +37,7 @@ void read_materials(std::string_view file_name, Textures& textures, std::vector<
             name = value;
             continue;
         }
-        // Options come before the name, which has no blank then.
+        // Options come before the name. A name after options has no blank.
         if (value.starts_with('-')) value.remove_prefix(value.find_last_of(" \t") + 1);
         if (!value.empty()) materials.push_back({name, textures.load(value)});
     }
@@ -50,7 +50,7 @@ uint32_t texture_of(const std::vector<Material>& materials, std::string_view nam
     return Textures::kNoTexture;
 }
 
-// The texture coordinate of a corner "vertex/texcoord/normal"; 0 0 where it has none.
+// Returns the texture coordinate of a corner "vertex/texcoord/normal", 0 0 if it has none.
 std::array<float, 2> texcoord_of(std::string_view word, const std::vector<std::array<float, 2>>& texcoords) {
     const size_t slash = word.find('/');
     if (slash == std::string_view::npos) return {};
@@ -100,13 +100,13 @@ Result<TriangleMesh> read_obj(std::string_view text, Textures* textures) {
         } else if (keyword == "f") {
             face.clear();
             for (std::string_view word = in.word_on_line(); !word.empty(); word = in.word_on_line()) {
-                if (word == "\\") {  // the face goes on in the next line
+                if (word == "\\") {  // the face continues on the next line
                     in.next_line();
                     continue;
                 }
                 const std::optional<int64_t> index = parse_integer(word.substr(0, word.find('/')));
                 if (!index || *index == 0) {
-                    return at_line(line, "'" + std::string(word.substr(0, 40)) + "' is no vertex of a face");
+                    return at_line(line, "'" + std::string(word.substr(0, 40)) + "' is not a vertex index of a face");
                 }
                 // 1 is the first vertex of the file, -1 the latest one.
                 if (textures) soup.corner_texcoords.push_back(texcoord_of(word, texcoords));

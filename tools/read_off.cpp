@@ -1,4 +1,4 @@
-// Object File Format, ascii, three dimensions: OFF with any of the prefixes ST, C, N, whose extra numbers are skipped.
+// Object File Format, ascii, three dimensions. OFF may have the prefixes ST, C and N. Their extra numbers are skipped.
 #include <array>
 #include <string>
 
@@ -35,7 +35,7 @@ Result<TriangleMesh> read_off(std::string_view text) {
     TextScanner in(text);
     skip_comments(in);
     const std::string_view keyword = in.word();
-    if (!is_known_keyword(keyword)) return Error{Stage::kInput, "its first word is not OFF (nor STOFF, COFF, NOFF)"};
+    if (!is_known_keyword(keyword)) return Error{Stage::kInput, "its first word is not OFF, STOFF, COFF or NOFF"};
 
     std::array<int64_t, 2> counts = {};  // vertices, faces; the third number (edges) is optional in practice
     for (int64_t& count : counts) {

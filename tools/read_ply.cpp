@@ -1,7 +1,7 @@
-// PLY: ascii, binary_little_endian, binary_big_endian; any property types; unknown elements and properties are skipped.
-// Of the faces it takes vertex_indices (or vertex_index), or the strips of a tristrips element. Where colours are wanted it
-// takes red, green, blue of the vertices, and texture coordinates of vertices (u v, s t, texture_u texture_v) or face corners
-// (texcoord, texnumber) for the images that "comment TextureFile" names.
+// PLY: ascii, binary_little_endian, binary_big_endian, with any property types. Skips unknown elements and properties.
+// Reads the faces' vertex_indices (or vertex_index), or the strips of a tristrips element. If colours are wanted, also
+// red, green, blue of the vertices, and texture coordinates of vertices (u v, s t, texture_u texture_v) or of face
+// corners (texcoord, texnumber) for the images that "comment TextureFile" names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -108,12 +108,13 @@ Result<Header> read_header(std::string_view text) {
             element.count = static_cast<uint64_t>(*count);
             header.elements.push_back(element);
         } else if (keyword == "property") {
-            if (header.elements.empty()) return bad_header(line, "a property before the first element");
+            if (header.elements.empty()) return bad_header(line, "a property comes before the first element");
             Property property;
             std::string_view type = in.word_on_line();
             if (type == "list") {
                 property.count_type = scalar_named(in.word_on_line());
-                if (property.count_type == Scalar::kNone) return bad_header(line, "unknown type of a list's length");
+                if (property.count_type == Scalar::kNone)
+                    return bad_header(line, "the length of a list has an unknown type");
                 type = in.word_on_line();
             }
             property.type = scalar_named(type);
@@ -140,7 +141,7 @@ Result<Header> read_header(std::string_view text) {
     return Error{Stage::kInput, "its PLY header has no end (is the file cut short?)"};
 }
 
-// The values of the body one by one. Reading past the end sets `failed`.
+// Reads the values of the body one by one. Reading past the end sets `failed`.
 class Body {
   public:
     Body(std::string_view text, Encoding encoding) : text_(text), scanner_(text), encoding_(encoding) {}
@@ -185,7 +186,7 @@ class Body {
         return 0;
     }
 
-    // Length of a list. Lengths that the rest of the file cannot hold fail here, before anything is stored.
+    // Reads the length of a list. Fails before anything is stored if the rest of the file cannot hold the list.
     size_t next_length(const Property& list) {
         const double length = next(list.count_type);
         const size_t left = encoding_ == Encoding::kAscii ? text_.size() - scanner_.offset() : text_.size() - position_;
@@ -204,7 +205,7 @@ class Body {
     size_t position_ = 0;
 };
 
-// Least number of bytes of one record, with empty lists.
+// Returns the least number of bytes of one record. Its lists count as empty.
 size_t least_size(const Element& element, Encoding encoding) {
     size_t size = 0;
     for (const Property& property : element.properties) {
@@ -219,7 +220,7 @@ int64_t as_index(double value) {
     return value >= 0 && value < 9e15 && value == std::floor(value) ? static_cast<int64_t>(value) : -1;
 }
 
-// A strip (-1 begins the next one) as triangles, every second one turned round.
+// Adds the triangles of strips. -1 begins the next strip. Every second triangle is turned round.
 void add_strips(const std::vector<int64_t>& strip, PolygonSoup& soup) {
     size_t begin = 0;
     for (size_t i = 0; i < strip.size(); ++i) {
@@ -260,7 +261,7 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
     return Role::kNone;
 }
 
-// 0..1 of a colour channel: integers fill their type.
+// Maps a colour channel to 0..1. Integers use the whole range of their type.
 float channel(double value, Scalar type) {
     switch (type) {
         case Scalar::kU8:
@@ -277,7 +278,7 @@ bool has_roles(const std::vector<Role>& roles, std::initializer_list<Role> wante
                        [&](Role r) { return std::count(roles.begin(), roles.end(), r) == 1; });
 }
 
-// Texture coordinates of a face's corners, v downwards; 0 0 for all where their number is wrong.
+// Adds the texture coordinates of a face's corners, v downwards. All are 0 0 if their number is wrong.
 void add_corner_texcoords(const std::vector<float>& uv, size_t corners, PolygonSoup& soup) {
     const bool fits = uv.size() == 2 * corners;
     for (size_t i = 0; i < corners; ++i)
@@ -285,7 +286,7 @@ void add_corner_texcoords(const std::vector<float>& uv, size_t corners, PolygonS
                                              : std::array<float, 2>{});
 }
 
-// Reads the textures that the header names, and completes the soup's coordinates in them.
+// Reads the textures that the header names, and completes the soup's texture coordinates.
 void add_textures(const Header& header, const std::vector<std::array<float, 2>>& vertex_texcoords,
                   const std::vector<uint32_t>& face_texture, Textures& textures, PolygonSoup& soup) {
     std::vector<uint32_t> loaded;
@@ -337,7 +338,7 @@ class Reader {
         }
         for (uint64_t record = 0; record < element.count; ++record) {
             if (!read_record(element, columns)) {
-                return Error{Stage::kInput, "it ends, or has something that is no number, inside '" +
+                return Error{Stage::kInput, "it ends, or has something that is not a number, in '" +
                                                 std::string(element.name.substr(0, 40)) + "' " +
                                                 std::to_string(record) + " of " + std::to_string(element.count) +
                                                 " (is the file cut short?)"};
@@ -349,7 +350,7 @@ class Reader {
     }
 
     Result<TriangleMesh> mesh() && {
-        if (!has_coordinates_) return Error{Stage::kInput, "its header names no vertices with x, y and z"};
+        if (!has_coordinates_) return Error{Stage::kInput, "its header has no vertices with x, y and z"};
         if (!textures_) return triangulate(std::move(soup_));
         if (soup_.sizes.size() == face_texture_.size())
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
@@ -358,7 +359,7 @@ class Reader {
     }
 
   private:
-    // False where the body ends.
+    // Returns false if the body ends.
     bool read_record(const Element& element, const Columns& columns) {
         values_.fill(0);
         list_.clear();
@@ -428,7 +429,7 @@ class Reader {
     std::vector<uint32_t> face_texture_;                  // index into Header::textures
     bool has_coordinates_ = false;
 
-    // Of the record.
+    // The current record.
     std::array<double, 10> values_ = {};  // by role
     std::vector<int64_t> list_;           // corners of a face or strip
     std::vector<float> texcoords_;        // of a face

@@ -1,4 +1,4 @@
-// STL, ascii and binary. Every facet brings its own three vertices; welding them is the cleaning stage's task.
+// STL, ascii and binary. Every facet has its own three vertices. The cleaning stage welds them.
 #include <array>
 #include <cctype>
 #include <cstring>
@@ -54,7 +54,7 @@ Result<TriangleMesh> read_ascii(std::string_view text) {
     PolygonSoup soup;
     TextScanner in(text);
     std::vector<int64_t> loop;
-    bool complete = false;  // the latest solid has its end
+    bool complete = false;  // the latest solid has ended
     while (!in.at_end()) {
         const size_t line = in.line();
         std::string_view word = in.word_on_line();
@@ -89,7 +89,7 @@ Result<TriangleMesh> read_ascii(std::string_view text) {
 }  // namespace
 
 Result<TriangleMesh> read_stl(std::string_view text) {
-    // Some binary files begin with "solid" too: their size or their zero bytes tell them.
+    // Some binary files begin with "solid" too. Their size or their zero bytes tell them apart.
     if (text.size() >= kHeaderSize && claimed_size(text) == text.size()) return read_binary(text);
     TextScanner in(text);
     const bool is_text = equals_ignoring_case(in.word(), "solid") && text.find('\0') == std::string_view::npos;

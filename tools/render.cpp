@@ -18,10 +18,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr uint32_t kSupersampling = 3;
-constexpr double kDistance = 4.5;  // of the eye from the centre, in radii of the model: a long lens
-constexpr double kFilled = 0.92;   // of the picture's side that the model fills
+constexpr double kDistance = 4.5;  // from the eye to the centre, in radii of the model: a long lens
+constexpr double kFilled = 0.92;   // part of the picture's side that the model fills
 constexpr uint32_t kCaptionHeight = 40;
-constexpr double kLineBias = 1e-3;  // nearness (1 / radii) by which a line is lifted off the surface it lies on
+constexpr double kLineBias = 1e-3;  // lifts a line off its surface; in nearness, 1 / radii
 const Vector3d kFront(0.80, 0.76, 0.70);
 const Vector3d kBack(0.80, 0.35, 0.28);
 const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
@@ -85,7 +85,7 @@ std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const std::vector
     return normals;
 }
 
-// Linear light of a surface point whose normal is in camera axes.
+// Returns the linear light of a surface point. Its normal is in camera axes.
 Vector3d shade(Vector3d normal) {
     const double length = normal.norm();
     normal = length > 0 ? Vector3d(normal / length) : Vector3d::UnitZ();
@@ -133,7 +133,7 @@ struct Corner {
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// paint(weights): linear light at a point given by the weights of the corners.
+// paint(weights) returns the linear light at the point with these weights of the corners.
 template <class Paint>
 void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint& paint, Canvas& canvas) {
     const Vector2d& a = corners[0].pixel;
@@ -145,7 +145,7 @@ void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint&
     const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMax(0.0);
     const Vector2d high = a.cwiseMax(b).cwiseMax(c).cwiseMin(last);
     if (low.x() > high.x() || low.y() > high.y()) return;
-    // Distance in samples from the edge opposite of a corner = its weight times this.
+    // A corner's weight times this is the distance from the opposite edge, in samples.
     const std::array<double, 3> height = {std::abs(doubled_area) / (c - b).norm(),
                                           std::abs(doubled_area) / (a - c).norm(),
                                           std::abs(doubled_area) / (b - a).norm()};
@@ -171,10 +171,10 @@ void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint&
     }
 }
 
-// Where lines pass: 0 nowhere, 1 behind the surface, 2 in front.
+// Per sample. 0: no line, 1: a line behind the surface, 2: a line in front.
 using LineMask = std::vector<uint8_t>;
 
-// A line of the width of a pen, seen over what is not nearer than it by more than kLineBias.
+// Marks a line of a pen's width. Only what is nearer by more than kLineBias hides it.
 void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, LineMask& mask) {
     constexpr double kPen = 0.9 * kSupersampling;
     const double length = (to.pixel - from.pixel).norm();
@@ -257,7 +257,7 @@ Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const 
     const double radius = 0.5 * extent.norm();
     if (!(radius > 0) || !std::isfinite(radius)) return average(canvas);
 
-    // Into camera axes, centred, radius 1.
+    // Moves the model into camera axes, centred, radius 1.
     const Matrix3d axes = camera_axes(view, extent);
     const Vector3d centre = 0.5 * (bounds.low + bounds.high);
     std::vector<Vector3d> seen(mesh.positions.size());
@@ -293,7 +293,7 @@ Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const 
         for (size_t k = 0; k < 3; ++k) {
             corners[k] = corner_at(t[k]);
             if (view.flat) continue;
-            // Which side is seen is decided per triangle: an interpolated normal may lean over the silhouette.
+            // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
             if (normals[t[k]].norm() > 0) normal[k] = normals[t[k]].normalized();
         }
         const Vector3d to_eye = Vector3d(0, 0, kDistance) - seen[t[0]];
@@ -375,7 +375,7 @@ Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
         const uint32_t x_margin = (longer - image.columns) / 2, y_margin = (longer - image.rows) / 2;
         for (uint32_t y = 0; y < tile; ++y) {
             for (uint32_t x = 0; x < tile; ++x) {
-                // Undefined samples stay white, as what lies beside an image that is no square; below zero wraps round.
+                // Undefined samples and the margins of a rectangle stay white. Below zero wraps round.
                 const auto row = static_cast<uint32_t>(uint64_t{y} * longer / tile) - y_margin;
                 const auto column = static_cast<uint32_t>(uint64_t{x} * longer / tile) - x_margin;
                 if (row >= image.rows || column >= image.columns) continue;

@@ -1,5 +1,5 @@
-// A small software rasteriser, so that a mesh can be looked at on any machine: z-buffer, one key and one fill light,
-// edges smoothed by averaging kSupersampling^2 samples per pixel. Deterministic. Cost O(triangles + pixels).
+// A small software rasteriser that draws a mesh on any machine: z-buffer, one key and one fill light, edges smoothed by
+// averaging kSupersampling^2 samples per pixel. Deterministic. Cost O(triangles + pixels).
 #pragma once
 
 #include <cstdint>
@@ -29,24 +29,24 @@ struct View {
     bool wire = false;      // draws the triangles' edges
 };
 
-// The whole mesh, filling the picture. Faces seen from behind are reddish, so that holes and flipped faces show.
-// Triangles with a non-finite corner are left out. `lines`: edges of the mesh, in red, paler behind the surface.
+// Draws the mesh so that it fills the picture. Faces seen from behind are reddish, so holes and flipped faces show.
+// Leaves out triangles with a non-finite corner. `lines`: edges of the mesh, in red, paler behind the surface.
 Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines = {});
 
-// A map of the mesh to the plane (uv per vertex, v downwards), filling the picture. Blue: the surface is squeezed there, it
-// gets fewer samples than its share; white: its share; orange: more.
+// Draws a flat map of the mesh so that it fills the picture. uv per vertex, v downwards. Blue: the map squeezes the
+// surface, which gets fewer samples than its share. White: its share. Orange: more.
 Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 2>> uv, uint32_t size);
 
-// The geometry images themselves, x y z of the bounding box as red green blue; several images as tiles.
+// Draws the geometry images themselves: x y z in the bounding box as red green blue. Several images become tiles.
 Picture render_images(std::span<const DecodedImage> images, uint32_t size);
 
 struct Panel {
     Picture picture;
     std::string caption;
 };
-// Panels of equal height from left to right, captions below.
+// Places panels of equal height from left to right, captions below.
 Picture place_side_by_side(std::span<const Panel> panels);
-// Pictures of equal width from top to bottom.
+// Places pictures of equal width from top to bottom.
 Picture place_below(const Picture& top, const Picture& bottom);
 
 Result<Bytes> write_png(const Picture& picture);

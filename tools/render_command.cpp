@@ -1,4 +1,4 @@
-// gim render: a mesh as a PNG, alone or beside its geometry image and reconstruction.
+// gim render: draws a mesh as a PNG, alone or beside its geometry image and reconstruction.
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"

@@ -27,7 +27,7 @@ constexpr const char* kHeader =
 constexpr const char* kPackagedBunny = "/usr/share/glmark2/models/bunny.obj";
 constexpr uint32_t kDefaultSide = 257;
 
-// In the order of the file. Generated models first: every machine has them.
+// In the order of the file. Generated models come first, because every machine has them.
 constexpr std::array kGenerated = {"sphere-rough-10800", "box-19200",   "limbs-rough",
                                    "torus-rough-4096",   "tori-3",      "plate-5",
                                    "terrain-3200",       "annulus-512", "sphere-holes-6"};
@@ -46,7 +46,7 @@ struct Setting {
     RateTarget rate;
     uint32_t bits = 12;
     Layout layout = Layout::kGim;
-    bool any_side = false;  // as the program without --size: the encoder may choose a smaller side
+    bool any_side = false;  // the encoder may choose a smaller side, as the program does without --size
 };
 constexpr uint32_t kChartSamples = 65536;  // as in the paper's tables
 constexpr RateTarget kLossless = {RateTarget::Kind::kLossless, 0};
@@ -70,7 +70,7 @@ std::optional<TriangleMesh> scanned_mesh(const std::string& name, const std::str
 }
 
 // Time to decode level 0 of all images to meshes with normals, on one thread with warm memory. The best of several runs
-// counts, because other programs may use the machine too. Negative where the file does not decode.
+// counts, because other programs may use the machine too. Negative if the file does not decode.
 double decode_milliseconds(const Bytes& file) {
     constexpr int kRuns = 20;
     Decoder decoder;
@@ -140,7 +140,8 @@ class Table {
         std::istringstream lines(std::string(old.value().begin(), old.value().end()));
         std::string line;
         std::getline(lines, line);
-        if (line != kHeader) return Error{Stage::kInput, "has other columns than this program writes"};
+        if (line != kHeader)
+            return Error{Stage::kInput, "it has other columns than this program writes; name another file"};
         while (std::getline(lines, line)) {
             const size_t after_model = line.find(',');
             rows_[line.substr(0, line.find(',', after_model + 1))] = line;
@@ -198,7 +199,7 @@ Result<void> measure(Table& table, const Wanted& wanted, const std::string& fold
         if (settings.empty()) return {};
         const std::optional<TriangleMesh> mesh =
             is_scanned ? scanned_mesh(name, folder) : corpus::corpus().named(name).mesh();
-        if (!mesh) std::fprintf(stderr, "%s: not on this machine, its rows stay\n", name.c_str());
+        if (!mesh) std::fprintf(stderr, "%s: not on this machine; its rows stay\n", name.c_str());
         for (const Setting* setting : settings) {
             if (!mesh) break;
             const std::string row = measured_row(name, *setting, *mesh, wanted.side);
@@ -239,10 +240,9 @@ int main(int argc, char** argv) {
     app.footer("decode_ms and encode_cpu_s depend on the machine. All other columns must not.");
     app.add_option("CSV", path, "File to write, usually corpus/results.csv")->required();
     app.add_option("--models", models, "Folder of the development models (PLY)")->capture_default_str();
-    app.add_option("--only", wanted.models, "Measure these models, keep the other rows");
+    app.add_option("--only", wanted.models, "Measure only these models, keep the other rows");
     app.add_option("--settings", wanted.settings, "Measure only these settings, keep the other rows");
-    app.add_option("--size", wanted.side, "Samples per side, the most where the encoder chooses")
-        ->capture_default_str();
+    app.add_option("--size", wanted.side, "Samples per side; the most if the encoder chooses")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     return gim::run(path, models, wanted);
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the tables and the plot of what gim reaches, from the CSV files in corpus/.
 
-  python3 tools/results.py           corpus/RESULTS.md, the table of sizes in README.md, spec/rate-distortion.png
-  python3 tools/results.py --check   fails if RESULTS.md or README.md are not what the command above would write
+  python3 tools/results.py           writes corpus/RESULTS.md, the table of sizes in README.md, spec/rate-distortion.png
+  python3 tools/results.py --check   fails if RESULTS.md or README.md differ from what the command above would write
 
 The plot needs matplotlib. Without it the old plot stays, and a note says so.
 """
@@ -37,7 +37,7 @@ def coder_version():
 
 
 class Row:
-    """One row of results.csv. Values that were not measured are None."""
+    """One row of results.csv. A value that was not measured is None."""
 
     def __init__(self, cells, coder):
         self.cells = cells
@@ -53,7 +53,7 @@ class Row:
         return "-" if value is None else format(value, form) + unit
 
     def bytes(self):
-        """Bytes with the mark of an older coder."""
+        """Returns the bytes, with a mark if an older coder made the file."""
         return self.failure or self.text("bytes") + (f" {OLD}" if self.is_old else "")
 
 
@@ -63,12 +63,12 @@ def read_table(path):
 
 
 def read_results(coder):
-    """{(model, setting): Row} in the order of the file."""
+    """Returns {(model, setting): Row} in the order of the file."""
     return {(cells["model"], cells["setting"]): Row(cells, coder) for cells in read_table(RESULTS_CSV)}
 
 
 def read_rivals():
-    """{model: {dB: bytes}}"""
+    """Returns {model: {dB: bytes}}."""
     rivals = {}
     for cells in read_table(RIVALS_CSV):
         sizes = {db: cells[f"bytes_at_{db}dB"] for db in TARGETS_DB}
@@ -88,7 +88,7 @@ def of_setting(results, setting):
 # ---- the table against rivals ----------------------------------------------------------------------------------------
 
 def size_cell(row, rival):
-    """Bytes of gim, bytes of the rival, quotient."""
+    """Returns the bytes of gim, the bytes of the rival and their quotient."""
     if row is None or row.failure:
         return "-"
     if rival is None:

@@ -1,5 +1,5 @@
-# Sourced by quickstart.sh, test.sh and lint.sh: installs missing Debian packages, tells progress, finds the tree.
-# Needs only bash, git and apt. Calls apt only when something is missing.
+# Sourced by quickstart.sh, test.sh and lint.sh. Installs missing Debian packages, reports progress, finds the tree.
+# Needs only bash, git and apt. Calls apt only if a package is missing.
 
 GIM_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 readonly GIM_ROOT
@@ -23,16 +23,16 @@ as_root() {
     elif command -v sudo >/dev/null; then
         sudo "$@"
     else
-        die "installing packages needs root or sudo; as root, run: apt-get install --no-install-recommends $GIM_MISSING"
+        die "packages are missing; run as root: apt-get install --no-install-recommends $GIM_MISSING"
     fi
 }
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
-# install_packages NAME...: does nothing when all of them are there.
+# install_packages NAME...: does nothing if all of them are installed.
 install_packages() {
     local missing=() name
-    command -v dpkg-query >/dev/null || die "this script knows Debian's packages only; install by hand: $*"
+    command -v dpkg-query >/dev/null || die "this script knows only Debian's packages; install these by hand: $*"
     for name in "$@"; do
         is_installed "$name" || missing+=("$name")
     done
@@ -40,12 +40,12 @@ install_packages() {
     GIM_MISSING="${missing[*]}"
     say "Installing ${#missing[@]} Debian packages: $GIM_MISSING"
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update ||
-        die "'apt-get update' failed (is the network up?); then run this script again"
+        die "'apt-get update' failed (is the network up?); run this script again when it works"
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "${missing[@]}" ||
-        die "apt-get could not install: $GIM_MISSING (this needs Debian 12 or newer); install them and run this script again"
+        die "apt-get cannot install: $GIM_MISSING (needs Debian 12 or newer); install them and run this script again"
 }
 
-# configure_and_build PRESET [cmake options]: in build/PRESET, with ccache where there is one.
+# configure_and_build PRESET [cmake options]: builds in build/PRESET, with ccache if it is installed.
 configure_and_build() {
     local preset=$1
     shift

@@ -9,8 +9,8 @@
 namespace gim {
 namespace {
 
-constexpr uint32_t kPixels = 480;       // of a picture of its own
-constexpr uint32_t kStripPixels = 200;  // of one in the strip
+constexpr uint32_t kPixels = 480;       // per side of a single picture
+constexpr uint32_t kStripPixels = 200;  // per side of a picture in the strip
 constexpr size_t kMostInStrip = 8;
 
 Panel draw(const Snapshot& state, uint32_t pixels) {

@@ -1,4 +1,4 @@
-// The states of an encoding as PNGs (gim encode --debug-dir): the surface with its cut, and the map below it.
+// Draws the states of an encoding as PNGs (gim encode --debug-dir): the surface with its cut, and the map below it.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace gim {
 
 class StatePictures {
   public:
-    // `folder` is made where it is missing. Its files of earlier runs are overwritten, name by name.
+    // make_folder() makes `folder` if it is missing. Files of the same names are overwritten.
     explicit StatePictures(std::string folder) : folder_(std::move(folder)) {}
 
     Result<void> make_folder() const;

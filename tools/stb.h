@@ -1,4 +1,4 @@
-// What we take from the stb headers, which are not warning-clean and stay behind this wall.
+// The functions of the stb headers that gim uses. Those headers give warnings, so only stb.cpp includes them.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ std::vector<uint8_t> png_bytes(const uint8_t* rgb, uint32_t width, uint32_t heig
 // PNG file of 16-bit rgb rows, top first; empty on failure.
 std::vector<uint8_t> png16_bytes(const uint16_t* rgb, uint32_t width, uint32_t height);
 
-// An image file (PNG, JPEG, TGA, BMP, ...) as 8-bit rgb, top row first; empty when it is none or has more than 2^28 pixels.
+// An image file (PNG, JPEG, TGA, BMP, ...) as 8-bit rgb, top row first. Empty if it is no image or above 2^28 pixels.
 struct DecodedPicture {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
 DecodedPicture decode_picture(std::span<const uint8_t> file);
 
-// A text in a small fixed font as filled boxes, origin at the top left, capitals 7 units high.
+// A text in a small fixed font, as filled boxes. Origin at the top left, capitals 7 units high.
 struct TextBox {
     double left, top, right, bottom;
 };

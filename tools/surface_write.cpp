@@ -60,8 +60,7 @@ std::array<float, 3> facet_normal(const DecodedImage& image, const uint32_t* tri
         normal[k] = (double{b[i]} - a[i]) * (double{c[j]} - a[j]) - (double{b[j]} - a[j]) * (double{c[i]} - a[i]);
         squared += normal[k] * normal[k];
     }
-    const double scale =
-        squared > 0 ? 1 / std::sqrt(squared) : 0;  // zero area: no normal, which readers compute anyway
+    const double scale = squared > 0 ? 1 / std::sqrt(squared) : 0;  // zero area: no normal; readers compute it anyway
     return {static_cast<float>(normal[0] * scale), static_cast<float>(normal[1] * scale),
             static_cast<float>(normal[2] * scale)};
 }
@@ -70,7 +69,7 @@ bool has_colors(std::span<const DecodedImage> images) {
     return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.colors.is_there(); });
 }
 
-// Of a fused vertex, at its first sample; white where the image has no colours.
+// Returns the colour of a fused vertex, at its first sample. White if the image has no colours.
 std::array<uint8_t, 3> vertex_color(const DecodedImage& image, size_t v) {
     if (!image.colors.is_there()) return {255, 255, 255};
     return color_at(image.colors, image.texcoords[2 * v], image.texcoords[2 * v + 1]);
@@ -128,9 +127,8 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
     append_text(out, "# decoded by gim\n");
     if (!material_file.empty()) append_text(out, "mtllib " + material_file + "\n");
     const bool colored = has_colors(images);
-    size_t base = 1;  // OBJ counts from 1
-    size_t grid_base =
-        1;  // texture coordinates are those of the samples, normals and positions those of the fused vertices
+    size_t base = 1;       // OBJ counts from 1
+    size_t grid_base = 1;  // texture coordinates belong to samples, normals and positions to fused vertices
     for (size_t i = 0; i < images.size(); ++i) {
         const DecodedImage& image = images[i];
         append_text(out, "o image" + std::to_string(i) + "\n");

@@ -1,10 +1,10 @@
-// Decoded images as files of other formats: PLY, OBJ, OFF, STL, GLB (the surface) and EXR (the image itself).
+// Writes decoded images in other formats: PLY, OBJ, OFF, STL, GLB (the surface) and EXR (the image itself).
 //
-// PLY, OBJ, OFF share the vertices on the cut, so the surface is watertight by its indices. STL repeats every vertex by
-// nature. GLB repeats the samples on the cut, with equal positions and normals, because texture coordinates jump there;
-// `fused` leaves texture coordinates out and shares the vertices instead. Coordinates are float32 in every format
-// (text: shortest decimal form that reads back as the same float). Several images become objects (OBJ), nodes (GLB),
-// parts (EXR), else one mesh.
+// PLY, OBJ and OFF share the vertices on the cut, so the surface is watertight by its indices. STL repeats every vertex
+// by nature. GLB repeats the samples on the cut, with equal positions and normals, because texture coordinates jump
+// there. With `fused` it leaves out texture coordinates and shares the vertices. Coordinates are float32 in every
+// format (text: shortest decimal form that reads back as the same float). Several images become objects (OBJ), nodes
+// (GLB), parts (EXR), or else one mesh.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct SurfaceOptions {
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images,
                             const SurfaceOptions& options = {});
 
-// One function per format. Colours: PLY and OBJ give them to the vertices, GLB has them as base-colour texture, and a normal
-// map as tangent-space normal texture (both PNG).
+// One function per format. PLY and OBJ store colours at the vertices. GLB stores them as base-colour texture, and a
+// normal map as tangent-space normal texture (both PNG).
 Bytes write_ply(std::span<const DecodedImage> images);  // binary little-endian, with normals
 // With normals and texture coordinates (right on both sides of the cut). Material i of the file is "image<i>".
 Bytes write_obj(std::span<const DecodedImage> images, const std::string& material_file = {});
@@ -40,12 +40,12 @@ Bytes write_stl(std::span<const DecodedImage> images);  // binary
 Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused);
 Result<Bytes> write_exr(std::span<const DecodedImage> images);  // float32 X, Y, Z, mask; ZIP
 
-// columns*rows triples as three float32 channels of these names.
+// Writes columns*rows triples as three float32 channels with these names.
 Result<Bytes> write_triples_exr(uint32_t columns, uint32_t rows, const std::vector<float>& values,
                                 const std::array<const char*, 3>& channels);
 
-// A texture coordinate so that 0 and 1 are the centres of the first and last of `pixels` pixels of a texture, which is where
-// renderers expect the pixels' values. 0 pixels: as it is.
+// Maps a texture coordinate so that 0 and 1 become the centres of the first and last of `pixels` pixels, where
+// renderers expect the pixels' values. 0 pixels: unchanged.
 float texture_coordinate(float t, uint32_t pixels);
 
 }  // namespace gim

@@ -20,7 +20,7 @@ Vec3 any_perpendicular(const Vec3& n) {
     return n.cross(axis).normalized();
 }
 
-// As write_glb does: a surface without a normal gets any.
+// A surface without a normal gets any normal, as in write_glb.
 Vec3 normal_or_any(const std::vector<float>& normals, size_t i) {
     const Vec3 n = triple(normals, i);
     return n.squaredNorm() > 0 ? n : Vec3::UnitZ();
@@ -30,7 +30,8 @@ struct Frame {
     Vec3 normal = Vec3::Zero(), tangent = Vec3::Zero();
 };
 
-// A direction in the frame that a renderer interpolates to: it is no longer quite perpendicular, so solve for the weights.
+// Returns a direction in the frame that a renderer interpolates. That frame is not quite perpendicular, so this solves
+// for the weights.
 Vec3 local_direction(const Frame& frame, const Vec3& direction) {
     const Vec3 n = frame.normal.squaredNorm() > 0 ? frame.normal.normalized() : Vec3::UnitZ();
     const Vec3 t = frame.tangent.squaredNorm() > 0 ? frame.tangent.normalized() : any_perpendicular(n);
@@ -40,7 +41,7 @@ Vec3 local_direction(const Frame& frame, const Vec3& direction) {
     return axes.inverse() * direction;
 }
 
-// Calls f(texel, barycentric coordinates) for the texels of a plane that lie in a triangle, given by its corners in texels.
+// Calls f(texel, barycentric coordinates) for the texels of a plane in a triangle. The corners are in texels.
 template <class F>
 void for_each_texel(const std::array<Vec2, 3>& corner, const ImagePlane& plane, const F& f) {
     const auto twice_area = [](const Vec2& a, const Vec2& b, const Vec2& c) {

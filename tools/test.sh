@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short fuzzing run, all
-# tests. Installs what is missing. About ten minutes on two cores, less with ccache.
+# Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
+# fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
 # Usage: bash tools/test.sh
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -13,7 +13,8 @@ configure_and_build ci -DGIM_BUILD_BENCHMARKS=ON
 
 configure_and_build sanitize
 say "Tests of format and decoder under the sanitizers"
-(cd "$GIM_ROOT" && ctest --preset sanitize -j"$(nproc)" --quiet) || die "the tests under the sanitizers failed: ctest --preset sanitize"
+(cd "$GIM_ROOT" && ctest --preset sanitize -j"$(nproc)" --quiet) ||
+    die "the tests under the sanitizers failed; run: ctest --preset sanitize"
 
 configure_and_build fuzz
 shopt -s nullglob
@@ -24,7 +25,7 @@ while read -r target; do
     mkdir -p "$corpus"
     "$target" -max_total_time="$FUZZ_SECONDS" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
         -artifact_prefix="$GIM_ROOT/build/fuzz/" "$corpus" "${seeds[@]}" 2>"$corpus.log" ||
-        { tail -40 "$corpus.log" && die "$(basename "$target") found something: build/fuzz/crash-*"; }
+        { tail -40 "$corpus.log" && die "$(basename "$target") found a failure; see build/fuzz/crash-*"; }
     grep -E "stat::(number_of_executed_units|average_exec_per_sec)" "$corpus.log" || true
 done < <(find "$GIM_ROOT/build/fuzz" -type f -name '*_fuzz' -perm -u+x | sort)
 

@@ -21,7 +21,7 @@ std::optional<double> parse_real(std::string_view word) {
     if (read.ec == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
     if (read.ptr == end) return value;
 
-    // What Microsoft's library used to print: 1.#QNAN, -1.#IND, 1.#INF00.
+    // Old Microsoft libraries print 1.#QNAN, -1.#IND, 1.#INF00.
     const std::string_view rest(read.ptr, static_cast<size_t>(end - read.ptr));
     if (rest.starts_with("#QNAN") || rest.starts_with("#SNAN") || rest.starts_with("#IND")) {
         return std::numeric_limits<double>::quiet_NaN();

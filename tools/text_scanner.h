@@ -1,6 +1,5 @@
-// Reads words and numbers from a text in memory, counting lines so that messages can name one.
-// Numbers are independent of the locale; "nan" and "inf" in their usual spellings are numbers (a later stage refuses
-// them with a better message than "not a number here" would be).
+// Reads words and numbers from a text in memory. Counts lines, so that messages can name one. Numbers do not depend on
+// the locale. "nan" and "inf" in their usual spellings are numbers: a later stage refuses them with a better message.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +15,15 @@ class TextScanner {
   public:
     explicit TextScanner(std::string_view text) : text_(text) {}
 
-    // Next word, on whichever line; empty at the end of the text.
+    // The next word, on any line. Empty at the end of the text.
     std::string_view word();
-    // Next word of the current line; empty where the line ends (call next_line to go on).
+    // The next word of the current line. Empty at the end of the line; next_line() goes on.
     std::string_view word_on_line();
-    // The rest of the current line without its end; goes on to the next line.
+    // The rest of the current line, without its end. Goes on to the next line.
     std::string_view rest_of_line();
-    // Skips the rest of the current line. False at the end of the text.
+    // Skips the rest of the current line. Returns false at the end of the text.
     bool next_line();
-    // Peeks: nothing but blanks is left.
+    // Skips blanks and empty lines. True if nothing is left.
     bool at_end();
 
     size_t offset() const { return position_; }

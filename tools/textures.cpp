@@ -23,7 +23,7 @@ uint32_t Textures::load(std::string_view name) {
     if (file.ok()) {
         index = add(file.value(), std::string(name));
     } else {
-        warnings.push_back("texture " + std::string(name) + ": " + file.error().message + "; left out");
+        warnings.push_back("texture " + std::string(name) + ": " + file.error().message + "; it is left out");
     }
     known_.push_back({std::string(name), index});
     return index;
@@ -32,7 +32,7 @@ uint32_t Textures::load(std::string_view name) {
 uint32_t Textures::add(std::span<const uint8_t> file, const std::string& name) {
     DecodedPicture picture = decode_picture(file);
     if (picture.rgb.empty()) {
-        warnings.push_back("texture " + name + ": not an image that gim can read; left out");
+        warnings.push_back("texture " + name + ": not an image that gim can read; it is left out");
         return kNoTexture;
     }
     images.push_back({picture.width, picture.height, std::move(picture.rgb)});

@@ -1,4 +1,4 @@
-// Texture files of the mesh that is being read.
+// The texture files of the mesh that is being read.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace gim {
 
-// What a mesh reader collects its textures in. A texture that is missing or no image is a warning, never an error: the shape
-// is there without it.
+// Collects the textures of a mesh. A texture that is missing or not an image gives a warning, never an error, because
+// the shape does not need it.
 class Textures {
   public:
     static constexpr uint32_t kNoTexture = UINT32_MAX;
 
-    // `folder`: that of the mesh file.
+    // `folder`: the folder of the mesh file.
     explicit Textures(std::string folder) : folder_(std::move(folder)) {}
 
-    // A file beside the mesh; the same name is read once. PNG, JPEG, TGA, BMP and what else stb_image knows.
+    // Reads a file beside the mesh, each name once: PNG, JPEG, TGA, BMP and whatever else stb_image reads.
     uint32_t load(std::string_view name);
-    // The bytes of an image file. `name` is for the warning.
+    // Adds the bytes of an image file. The warning uses `name`.
     uint32_t add(std::span<const uint8_t> file, const std::string& name);
-    // The text of another file beside the mesh (an .mtl); empty with a warning where there is none.
+    // Returns the text of another file beside the mesh (an .mtl). If there is none, it is empty, with a warning.
     std::string read_text(std::string_view name);
 
     std::vector<TextureImage> images;

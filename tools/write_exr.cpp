@@ -1,4 +1,4 @@
-// OpenEXR: float32 channels X, Y, Z (the cut closed) and mask (1 where the sample is defined). One part per image.
+// OpenEXR: float32 channels X, Y, Z (with the cut closed) and mask (1 if the sample is defined). One part per image.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -60,7 +60,7 @@ Imf::FrameBuffer frame_of(const DecodedImage& image, const std::vector<float>& m
     return frame;
 }
 
-// 1 where a sample is defined.
+// 1 if a sample is defined, else 0.
 std::vector<float> mask_of(const DecodedImage& image) {
     std::vector<float> mask(image.grid.size() / 3);
     for (size_t i = 0; i < mask.size(); ++i) mask[i] = image.is_defined(i) ? 1.0F : 0.0F;

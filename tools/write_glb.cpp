@@ -31,7 +31,7 @@ struct Buffer {
     json textures = json::array();  // texture i is image i
     json pictures = json::array();
 
-    // A PNG of rgb pixels, as many as the plane has, as a texture; its index.
+    // Adds a texture: a PNG of rgb pixels, as many as the plane has. Returns its index.
     size_t add_texture(const std::vector<uint8_t>& rgb, const ImagePlane& size) {
         const Bytes png = png_bytes(rgb.data(), size.columns, size.rows);
         views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", png.size()}});
@@ -70,7 +70,7 @@ void add_bounds(json& accessor, const std::vector<float>& positions) {
     accessor["max"] = high;
 }
 
-// Normals must have length 1; where the surface has none any direction will do.
+// Normals must have length 1. If the surface has none, any direction will do.
 std::vector<float> without_zeros(std::vector<float> normals) {
     for (size_t i = 0; i + 2 < normals.size(); i += 3) {
         if (normals[i] == 0 && normals[i + 1] == 0 && normals[i + 2] == 0) normals[i + 2] = 1;
@@ -78,7 +78,7 @@ std::vector<float> without_zeros(std::vector<float> normals) {
     return normals;
 }
 
-// For a texture of the plane's size; as they are where there is none.
+// Returns the texture coordinates for a texture of the plane's size. Without a plane they stay unchanged.
 std::vector<float> texcoords_for(const DecodedImage& image, const GridMesh& grid, const ImagePlane& plane) {
     std::vector<float> uv = at_samples(grid, image.grid_texcoords, 2);
     for (size_t i = 0; i + 1 < uv.size(); i += 2) {
@@ -102,7 +102,7 @@ json plain_material() {
     return {{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}};
 }
 
-// Textures of an image's planes: adds texture coordinates and tangents to the attributes, and the textures to the material.
+// Adds the textures of an image's planes to the material, and texture coordinates and tangents to the attributes.
 void add_planes(const DecodedImage& image, const GridMesh& grid, Buffer& buffer, json& attributes, json& material) {
     const ImagePlane& first = image.colors.is_there() ? image.colors : image.normal_map;
     attributes["TEXCOORD_0"] = buffer.add(texcoords_for(image, grid, first), 2, "VEC2", kFloat, kArrayBuffer);
@@ -143,7 +143,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
             buffer.add(without_zeros(fused ? image.normals : at_samples(grid, image.grid_normals, 3)), 3, "VEC3",
                        kFloat, kArrayBuffer);
         if (!fused) add_planes(image, grid, buffer, attributes, material);
-        // Images without textures share one.
+        // Images without textures share one material.
         auto same = std::find(materials.begin(), materials.end(), material);
         if (same == materials.end()) {
             materials.push_back(material);
@@ -186,7 +186,8 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
     pad(header, ' ');
 
     const uint64_t size = uint64_t{12} + 8 + header.size() + 8 + buffer.bytes.size();
-    if (size > UINT32_MAX) return Error{Stage::kWrite, "GLB files end at 4 GB; choose PLY or a coarser --level"};
+    if (size > UINT32_MAX)
+        return Error{Stage::kWrite, "GLB files may have at most 4 GB; choose PLY or a coarser --level"};
     Bytes out;
     out.reserve(size);
     append(out, kMagic);

@@ -6,12 +6,12 @@ from pathlib import Path
 
 TARGETS_DB = (60, 65, 70, 75)
 NORMAL_BYTES = (4000, 8000)
-STEP_DB = 0.2   # more bytes for less than this are no point of a curve: two sizes that aim at 60 dB land at 60.1 and 60.2
-TIMED_BITS = 12  # full meshes at this many bits, the usual setting, are always timed
-CHORD_DB = 3.0  # a point of a curve may not lie below a line between two others that are no further apart
+STEP_DB = 0.2   # a larger file must gain more than this, because two sizes that aim at 60 dB land at 60.1 and 60.2
+TIMED_BITS = 12  # full meshes with these bits, the usual setting, are always timed
+CHORD_DB = 3.0  # no point of a curve lies below a line between two others that are at most this far apart
 REACH_DB = 0.5  # a curve counts this far beyond its ends: an encoder that aims at 60 dB may land at 60.2
 
-# key: (label, colour, whether it is gim's own). Colours of Okabe and Ito: told apart by everybody.
+# key: (label, colour, whether it is gim's own). The colours of Okabe and Ito also suit colour-blind people.
 TOOLS = {
     "gim": ("gim, one square", "#000000", True),
     "mcgim": ("gim, charts", "#D55E00", True),
@@ -34,8 +34,8 @@ def is_own(tool):
 
 
 def front(points, better=1, step=0.0):
-    """Of (bytes, value) the ones that are better, by more than `step`, than all smaller files. `better` is 1 where more is
-    better, -1 where less is."""
+    """Returns the points (bytes, value) that are better than all smaller files by more than `step`. `better` is 1 if
+    more is better, -1 if less is."""
     kept = []
     for size, value in sorted(points, key=lambda p: (p[0], -better * p[1])):
         if not kept or better * (value - kept[-1][1]) > step:
@@ -44,8 +44,9 @@ def front(points, better=1, step=0.0):
 
 
 def psnr_curve(points):
-    """What a tool reaches: the front, less its dents. Settings come in steps, and between two files of about the same PSNR a
-    finer step would find what lies on the line between them, in (logarithm of bytes, PSNR). Longer lines would be guesses."""
+    """Returns what a tool reaches: the front without its dents. Settings come in steps. Between two files of about the
+    same PSNR, a finer step would reach the line between them, in (logarithm of bytes, PSNR). Longer lines would be
+    guesses."""
     kept = front(points, step=STEP_DB)
     line = [(math.log(size), value) for size, value in kept]
 
@@ -60,7 +61,7 @@ def psnr_curve(points):
 
 
 def bytes_at(curve, psnr):
-    """Bytes that reach `psnr`, linear in their logarithm between neighbours. None where it is not reached."""
+    """Returns the bytes that reach `psnr`, linear in their logarithm between neighbours. None if it is out of reach."""
     for size, value in curve:
         if abs(value - psnr) < 1e-9:
             return size
@@ -73,7 +74,7 @@ def bytes_at(curve, psnr):
 
 
 def value_at(curve, size):
-    """The value at that many bytes, linear in their logarithm. None where there is no smaller file."""
+    """Returns the value at `size` bytes, linear in their logarithm. None if there is no smaller file."""
     curve = sorted(curve)
     if not curve or size < curve[0][0]:
         return None
@@ -94,18 +95,19 @@ def points_of(rows, value="psnr"):
 
 
 def by_tool(rows):
-    """Rows of one model, by tool, in the order of TOOLS."""
+    """Groups the rows of one model by tool, in the order of TOOLS."""
     return {tool: [r for r in rows if r["tool"] == tool] for tool in TOOLS if any(r["tool"] == tool for r in rows)}
 
 
 def curve_rows(rows):
-    """The rows on a tool's curve."""
+    """Returns the rows on a tool's curve."""
     wanted = set(psnr_curve(points_of(rows)))
     return [r for r in usable(rows) if (float(r["bytes"]), float(r["psnr"])) in wanted]
 
 
 def read_recorded_rivals(path):
-    """{model: [(bytes, dB)]} of a table with columns model, bytes_at_60dB, ... Lines that begin with # are comments."""
+    """Reads {model: [(bytes, dB)]} from a table with columns model, bytes_at_60dB, ... Lines that begin with # are
+    comments."""
     curves = {}
     if not Path(path).is_file():
         return curves
@@ -117,7 +119,7 @@ def read_recorded_rivals(path):
 
 
 def psnr_curves(rows, recorded):
-    """{tool: its curve} of one model, with the recorded rival's where there is one."""
+    """Returns {tool: its curve} of one model, and the curve of the recorded rival if there is one."""
     curves = {tool: points_of(of_tool) for tool, of_tool in by_tool(rows).items()}
     if recorded:
         curves["rivals.csv"] = recorded
@@ -134,7 +136,7 @@ def markdown(head, lines):
 
 
 def size_table(models, recorded):
-    """Bytes at each target: every tool, then the best of gim's layouts over the best rival."""
+    """Writes the bytes at each target: every tool, then the best of gim's layouts over the best rival."""
     lines = []
     for model, rows in models.items():
         curves = psnr_curves(rows, recorded.get(model))
@@ -151,7 +153,7 @@ def size_table(models, recorded):
 
 
 def normal_table(models):
-    """Normal error of the files on the PSNR curve, and the least that any setting gives for so many bytes."""
+    """Writes the normal error of the files on the PSNR curve, and the least error of any setting at these bytes."""
     lines = []
     for model, rows in models.items():
         for tool, of_tool in by_tool(rows).items():
@@ -170,7 +172,8 @@ def is_usual_full_mesh(row):
 
 
 def decode_table(models, psnr=70):
-    """Of each tool the smallest timed file that reaches `psnr`, and the usual full meshes; speeds against Draco's at `psnr`."""
+    """Writes the smallest timed file of each tool that reaches `psnr`, and the usual full meshes. Speeds are relative
+    to Draco's at `psnr`."""
     lines = []
     for model, rows in models.items():
         chosen = {}

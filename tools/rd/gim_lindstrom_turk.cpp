@@ -1,12 +1,12 @@
-// gim_lindstrom_turk: simplifies a mesh with CGAL's edge collapse, Lindstrom-Turk cost and placement: the strongest
-// simplifier that gim is measured against.
+// gim_lindstrom_turk: simplifies a mesh with CGAL's edge collapse, Lindstrom-Turk cost and placement. It is the
+// strongest simplifier that gim is measured against.
 //
-// EVALUATION ONLY. CGAL's package Surface_mesh_simplification is GPL-3.0-or-later (or commercial), so a built copy of this
-// program is under the GPL as a whole. It is built only with GIM_BUILD_RD and an installed CGAL, as a program of its own; it
-// is never installed, nothing of gim links it, and no file of CGAL is in this repository.
+// EVALUATION ONLY. CGAL's package Surface_mesh_simplification is GPL-3.0-or-later (or commercial), so a built copy of
+// this program is under the GPL as a whole. It is built only with GIM_BUILD_RD and an installed CGAL, as a program of
+// its own. It is never installed, nothing of gim links it, and no file of CGAL is in this repository.
 //
-// In: a mesh; ratios of its edges to keep. Out: PREFIX<ratio>.off each. The method is memoryless (it compares with the
-// current surface, not with the input), so every ratio goes on from the one before.
+// In: a mesh, and ratios of its edges to keep. Out: one PREFIX<ratio>.off for each. The method is memoryless (it
+// compares with the current surface, not with the input), so every ratio continues from the one before.
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
@@ -35,7 +35,7 @@ int fail(const std::string& file, const std::string& message) {
     return 1;
 }
 
-// Where the input is no oriented manifold, vertices are split until it is.
+// If the input is not an oriented manifold, splits vertices until it is.
 Surface as_surface(const gim::TriangleMesh& mesh) {
     std::vector<Surface::Point> points;
     for (const auto& p : mesh.positions) points.emplace_back(p[0], p[1], p[2]);
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
         char* end = nullptr;
         ratios.push_back(std::strtod(argv[i], &end));
         if (*end != '\0' || !(ratios.back() > 0 && ratios.back() <= 1)) {
-            std::fprintf(stderr, "gim_lindstrom_turk: %s is no ratio in (0, 1]\n", argv[i]);
+            std::fprintf(stderr, "gim_lindstrom_turk: %s is not a ratio in (0, 1]\n", argv[i]);
             return 2;
         }
     }
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     const gim::Result<gim::TriangleMesh> read = gim::read_surface(input, 0);
     if (!read.ok()) return fail(input, read.error().message);
     Surface surface = as_surface(gim::weld_equal_positions(read.value()));
-    if (surface.is_empty()) return fail(input, "no triangles");
+    if (surface.is_empty()) return fail(input, "it has no triangles");
     const auto edges = static_cast<double>(surface.number_of_edges());
     for (const double ratio : ratios) {
         simplify(surface, static_cast<size_t>(ratio * edges));

@@ -1,4 +1,4 @@
-// gim_rivals: what tools/rd/run.py needs of other codecs. Evaluation only (GIM_BUILD_RD), never installed.
+// gim_rivals: runs other codecs for tools/rd/run.py. Evaluation only (GIM_BUILD_RD), never installed.
 #include <time.h>
 
 #include <CLI/CLI.hpp>
@@ -20,12 +20,12 @@ int fail(const std::string& file, const std::string& message) {
     return 1;
 }
 
-// With one vertex per position, as the rivals are best served.
+// Reads a mesh with one vertex per position, which suits the rivals best.
 Result<RivalMesh> read_rival_mesh(const std::string& path) {
     const Result<TriangleMesh> read = read_surface(path, 0);
     if (!read.ok()) return read.error();
     const TriangleMesh welded = weld_equal_positions(read.value());
-    if (welded.triangles.empty()) return Error{Stage::kInput, "no triangles"};
+    if (welded.triangles.empty()) return Error{Stage::kInput, "it has no triangles"};
     RivalMesh mesh;
     for (const auto& p : welded.positions) {
         mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
@@ -86,14 +86,15 @@ int decode(const Command& c) {
     return written.ok() ? 0 : fail(c.output, written.error().message);
 }
 
-// Processor time of this thread: on an idle machine the time that passes, and what others do counts little.
+// Returns the processor time of this thread. On an idle machine this is the time that passes. Other programs count
+// little.
 double thread_milliseconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-// All files take turns, so that whatever the machine is up to hits all of them alike; medians.
+// Decodes all files in turns, so that the load of the machine hits all of them alike. Prints medians.
 int time_decoders(const Command& c) {
     std::vector<Bytes> contents;
     std::vector<std::unique_ptr<RepeatedDecoder>> decoders;
@@ -103,13 +104,13 @@ int time_decoders(const Command& c) {
         if (!bytes.ok()) return fail(file, bytes.error().message);
         contents.push_back(std::move(bytes.value()));
         decoders.push_back(decoder_of(contents.back()));
-        if (!decoders.back() || !decoders.back()->run()) return fail(file, "not a file that decodes");
+        if (!decoders.back() || !decoders.back()->run()) return fail(file, "it does not decode");
     }
     std::vector<std::vector<double>> times(decoders.size());
     for (int round = 0; round < c.rounds; ++round) {
         for (size_t i = 0; i < decoders.size(); ++i) {
             const double begin = thread_milliseconds();
-            if (!decoders[i]->run()) return fail(c.files[i], "decodes only sometimes");
+            if (!decoders[i]->run()) return fail(c.files[i], "it decodes only sometimes");
             times[i].push_back(thread_milliseconds() - begin);
         }
     }
@@ -126,10 +127,11 @@ int time_decoders(const Command& c) {
 }
 
 int run(int argc, const char* const* argv) {
-    CLI::App app("Codecs that gim is compared with: Draco; meshoptimizer and zstd. See tools/rd/run.py.");
+    CLI::App app("Codecs that gim is compared with: Draco, and meshoptimizer with zstd. See tools/rd/run.py.");
     app.require_subcommand(1);
     Command c;
-    CLI::App* simplify_app = app.add_subcommand("simplify", "meshopt_simplify to each ratio: PREFIX<ratio>.off");
+    CLI::App* simplify_app =
+        app.add_subcommand("simplify", "Simplify with meshopt_simplify to each ratio, as PREFIX<ratio>.off");
     simplify_app->add_option("IN", c.input, "Mesh")->required();
     simplify_app->add_option("PREFIX", c.output, "Beginning of the output's paths")->required();
     simplify_app->add_option("RATIO", c.ratios, "Share of the triangles to keep")
@@ -140,15 +142,17 @@ int run(int argc, const char* const* argv) {
     for (CLI::App* sub : {draco_app, meshopt_app}) {
         sub->add_option("IN", c.input, "Mesh")->required();
         sub->add_option("OUT", c.output, "File to write")->required();
-        sub->add_option("--bits", c.bits, "Per coordinate")->check(CLI::Range(1, 16))->capture_default_str();
+        sub->add_option("--bits", c.bits, "Bits per coordinate")->check(CLI::Range(1, 16))->capture_default_str();
     }
-    CLI::App* decode_app = app.add_subcommand("decode", "Decode a file of draco, meshopt or gim to an .off");
+    CLI::App* decode_app = app.add_subcommand("decode", "Decode a draco, meshopt or gim file to an .off");
     decode_app->add_option("IN", c.input, "File")->required();
     decode_app->add_option("OUT", c.output, "Mesh to write")->required();
-    CLI::App* time_app =
-        app.add_subcommand("time", "Decode files in memory, in turns, on one thread; median processor time as CSV");
-    time_app->add_option("FILE", c.files, "Files of draco, meshopt or gim")->required();
-    time_app->add_option("--rounds", c.rounds, "Decodes of each")->check(CLI::Range(1, 10000))->capture_default_str();
+    CLI::App* time_app = app.add_subcommand(
+        "time", "Decode files in memory, in turns, on one thread. Print the median processor time as CSV");
+    time_app->add_option("FILE", c.files, "Draco, meshopt or gim files")->required();
+    time_app->add_option("--rounds", c.rounds, "How often each is decoded")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     if (simplify_app->parsed()) return simplify(c);
     if (draco_app->parsed()) return encode_with(c, encode_draco);

@@ -1,4 +1,4 @@
-"""Encodes, decodes and compares: one row per model, tool and setting, kept in a CSV file that a later run goes on with."""
+"""Encodes, decodes and compares: one row per model, tool and setting. A CSV file keeps the rows for later runs."""
 
 import csv
 import hashlib
@@ -22,20 +22,20 @@ KEY = COLUMNS[:3]
 RATIOS = (0.7, 0.5, 0.35, 0.25, 0.17, 0.12, 0.085, 0.06, 0.04, 0.028, 0.02, 0.014, 0.01, 0.006, 0.003)
 FULL_BITS = tuple(range(8, 17))
 SIMPLIFIED_BITS = tuple(range(7, 15))
-SATURATED_DB = 0.05  # where a bit more gains less, still more bits are not tried
+SATURATED_DB = 0.05  # if one more bit gains less, still more bits are not tried
 SUFFIX = {"draco": ".drc", "meshopt": ".mzs"}
 
 
 class Failure(Exception):
-    """A program that failed, in its own words."""
+    """A program failed. Holds its own words."""
 
 
 class Stopped(Exception):
-    """The run is being given up."""
+    """The run stops."""
 
 
 class Results:
-    """The rows, in memory and on disk. Appending is one write; a line torn by an interruption is dropped when read."""
+    """Keeps the rows in memory and on disk. Appending is one write. Reading drops a line that an interruption tore."""
 
     def __init__(self, path):
         self.path = Path(path)
@@ -82,7 +82,7 @@ class Results:
 
 
 class Programs:
-    """The programs by name, each a path or None, and how to run them."""
+    """Runs the programs. `paths` holds a path or None for each name."""
 
     def __init__(self, paths, timeout):
         self.paths = paths
@@ -96,7 +96,7 @@ class Programs:
 
     def run(self, name, *arguments):
         command = [str(self.paths[name]), *map(str, arguments)]
-        # In a session of its own, so that Ctrl-C reaches this script alone, which then ends them all.
+        # Runs in a session of its own, so that Ctrl-C reaches only this script, which then ends all programs.
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               start_new_session=True) as process:
             with self.lock:
@@ -119,7 +119,7 @@ class Programs:
         return out
 
     def stop(self):
-        """Ends what runs; whoever waits for it gets Stopped."""
+        """Ends the running programs. Whoever waits for one gets Stopped."""
         with self.lock:
             self.stopped = True
             for process in self.running:
@@ -131,7 +131,7 @@ def slug(tool, setting):
 
 
 class Laboratory:
-    """Measures one point at a time; methods may run on several threads."""
+    """Measures one point at a time. Its methods may run on several threads."""
 
     def __init__(self, programs, results, folder, samples, threads):
         self.programs, self.results, self.folder = programs, results, Path(folder)
@@ -148,7 +148,7 @@ class Laboratory:
         return self.place(model) / (slug(tool, setting) + suffix)
 
     def simplified(self, model, simplifier, ratio, ratios):
-        """The simplified mesh; the first that asks makes all of them."""
+        """Returns the simplified mesh. The first call makes the meshes of all ratios."""
         prefix = self.place(model) / f"{simplifier}-"
         wanted = Path(f"{prefix}{ratio:g}.off")
         with self.guard:
@@ -163,7 +163,7 @@ class Laboratory:
         return wanted
 
     def measure(self, point):
-        """Encodes, compares, records. Failures become rows too."""
+        """Encodes, compares and records one point. A failure becomes a row too."""
         row = dict.fromkeys(COLUMNS, "")
         row.update(model=point.model.stem, tool=point.tool, setting=point.setting, status="ok",
                    program=self.programs.versions["gim" if curves.is_own(point.tool) else "gim_rivals"])
@@ -200,7 +200,8 @@ class Laboratory:
         return row
 
     def time_decoders(self, model):
-        """Decode times of the rows that matter, all in one run, so that their ratios are fair. Returns how many."""
+        """Measures the decode times of the rows that matter, in one run, so that their ratios are fair. Returns the
+        number of rows."""
         rows = [r for of_tool in curves.by_tool(self.results.of_model(model.stem)).values()
                 for r in curves.curve_rows(of_tool)]
         rows += [r for r in curves.usable(self.results.of_model(model.stem))
@@ -209,7 +210,7 @@ class Laboratory:
         if not rows or all(r["decode_ms"] for r in rows):
             return 0
         for row in self.results.of_model(model.stem):
-            row["decode_ms"] = row["mtri_per_s"] = ""  # of an earlier run
+            row["decode_ms"] = row["mtri_per_s"] = ""  # drops the times of an earlier run
         files = [self.payload(model, r["tool"], r["setting"]) for r in rows]
         for row, line in zip(rows, csv.DictReader(io.StringIO(self.programs.run("gim_rivals", "time", *files)))):
             row["decode_ms"], row["mtri_per_s"] = line["decode_ms"], line["mtri_per_s"]
@@ -253,7 +254,7 @@ def simplified_point(model, simplifier, codec, ratio, bits, ratios):
 
 
 def plan(models, tools, sizes, targets, ratios, full_bits, simplified_bits):
-    """Chains of points: [(points, stop where the PSNR saturates)]. Chains may run side by side."""
+    """Returns chains of points: [(points, whether to stop when the PSNR saturates)]. Chains may run side by side."""
     chains = []
     for model in models:
         for tool in tools:
@@ -301,7 +302,7 @@ def run_chains(laboratory, chains, jobs, progress):
 
 
 def find_program(name, given, root):
-    """The path given, else the newest build of this tree, else what the shell would find. None: missing."""
+    """Returns the given path, else the newest build of this tree, else what the shell would find. None if missing."""
     if given:
         return Path(given).resolve() if Path(given).is_file() else None
     folders = [root / "build", *sorted((root / "build").glob("*"))]

@@ -1,4 +1,4 @@
-"""Pictures of the results. Needs matplotlib."""
+"""Draws the results. Needs matplotlib."""
 
 import math
 
@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter  # noqa: E402
 
 import curves  # noqa: E402
 
-PLOT_DB = (50, 90)  # what the pictures show
+PLOT_DB = (50, 90)  # range that the pictures show
 
 
 def style(tool):
@@ -79,7 +79,7 @@ def normal_picture(path, model, rows):
 
 
 def summary_picture(path, models, recorded):
-    """PSNR over bytes of all models, one panel each."""
+    """Draws PSNR over bytes for all models, one panel each."""
     columns = min(4, len(models))
     lines = math.ceil(len(models) / columns)
     figure, grid = plt.subplots(lines, columns, figsize=(3.6 * columns, 2.9 * lines), squeeze=False)

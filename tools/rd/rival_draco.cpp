@@ -14,7 +14,7 @@ class DracoDecoder : public RepeatedDecoder {
   public:
     explicit DracoDecoder(const Bytes& bytes) : bytes_(bytes) {}
 
-    // Ends with Draco's own mesh: copying it into arrays of the caller's is not counted.
+    // Stops at Draco's own mesh. Copying it into the caller's arrays is not counted.
     bool run() override {
         draco::DecoderBuffer buffer;
         buffer.Init(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());

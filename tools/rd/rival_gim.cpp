@@ -30,7 +30,7 @@ class GimDecoder : public RepeatedDecoder {
     }
 
     bool run() override {
-        if (decoder_.open(bytes_) != GIM_OK) return false;  // what every decoder does first
+        if (decoder_.open(bytes_) != GIM_OK) return false;  // counted, because every decoder does it
         for (Image& image : images_) {
             if (decoder_.mesh(image.level, {image.positions, {}, {}, image.triangles}) != GIM_OK) return false;
         }

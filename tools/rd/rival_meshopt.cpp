@@ -1,7 +1,7 @@
 // meshoptimizer's vertex and index codecs, then zstd over both.
 //
-// File: "MZS1", u32 vertices, u32 indices, u32 bytes of the encoded vertices, float origin[3], float step; a zstd frame of
-// the encoded vertices and the encoded indices. A vertex is four u16: x, y, z and zero.
+// File: "MZS1", u32 vertices, u32 indices, u32 bytes of the encoded vertices, float origin[3], float step; then a zstd
+// frame of the encoded vertices and the encoded indices. A vertex is four u16: x, y, z and zero.
 #include <meshoptimizer.h>
 #include <zstd.h>
 
@@ -26,7 +26,7 @@ struct Header {
 
 using Quantized = std::array<uint16_t, 4>;
 
-// Vertices in the order of their first use, triangles in an order that suits the cache and the index codec.
+// Puts vertices in the order of their first use, and triangles in an order that suits the cache and the index codec.
 RivalMesh reordered(const RivalMesh& mesh) {
     std::vector<uint32_t> indices(mesh.triangles.size() * 3);
     std::memcpy(indices.data(), mesh.triangles.data(), indices.size() * sizeof(uint32_t));
@@ -152,7 +152,7 @@ RivalMesh simplify_quadric(const RivalMesh& mesh, double ratio) {
     const size_t count = mesh.triangles.size() * 3;
     const auto target = static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size())) * 3;
     std::vector<uint32_t> indices(count);
-    // The target error is a share of the mesh's extent; 1 never stops the collapses.
+    // The target error is a part of the mesh's extent. 1 never stops the collapses.
     indices.resize(meshopt_simplify(indices.data(), mesh.triangles.front().data(), count, mesh.positions.front().data(),
                                     mesh.positions.size(), sizeof(mesh.positions[0]), target, 1.0F, 0, nullptr));
     RivalMesh result;

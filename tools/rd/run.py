@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Rate-distortion curves of gim and of what people use instead.
 
-Each model is coded by gim (one square, charts), and by Draco and meshoptimizer + zstd, both as it is and after simplification
-(meshopt_simplify, or Lindstrom-Turk where CGAL is installed). Each program runs at many settings. `gim compare` measures each
-decoded result against the model: symmetric PSNR, RMS distance both ways, Hausdorff distance, and the mean angle between shading
-normals. Samples are uniform by area, on both surfaces, and each is compared with the nearest point of the other surface. The
-decoders are timed in memory, on one thread, in turns. The folder --out receives:
+gim codes each model as one square and as charts. Draco and meshoptimizer + zstd code it as it is and after
+simplification (meshopt_simplify, or Lindstrom-Turk if CGAL is installed). Each program runs at many settings.
+`gim compare` measures each decoded result against the model: symmetric PSNR, RMS distance both ways, Hausdorff
+distance, and the mean angle between shading normals. Samples are uniform by area, on both surfaces. Each is compared
+with the nearest point of the other surface. The decoders are timed in memory, on one thread, in turns. The folder --out
+receives:
 
   results.csv      one row per model, tool and setting; a later run keeps the rows and measures what is missing
   MODEL-psnr.png   PSNR over bytes;  MODEL-decode.png decode time over PSNR;  MODEL-normals.png normal error over bytes
@@ -18,8 +19,8 @@ Programs (once, in the root of the repository, on Debian 12):
   apt-get install libdraco-dev libmeshoptimizer-dev libcgal-dev python3-matplotlib
   cmake --preset release -DGIM_BUILD_RD=ON && cmake --build --preset release
 
-The run leaves out what is missing, with a note. The rivals are programs for evaluation: they are never installed and never linked to
-gim. gim_lindstrom_turk is the only one that includes GPL headers (CGAL's). Example:
+The run leaves out missing programs, with a note. The rivals are for evaluation only: they are never installed and never
+linked to gim. gim_lindstrom_turk is the only one that includes GPL headers (CGAL's). Example:
 
   python3 tools/rd/run.py --models bunny.ply horse.ply --out out/rd
 """
@@ -55,32 +56,36 @@ def die(text):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    add("--models", nargs="+", required=True, type=Path, metavar="MESH", help="meshes that gim reads")
-    add("--out", required=True, type=Path, metavar="DIR", help="where everything goes; made if missing")
+    add("--models", nargs="+", required=True, type=Path, metavar="MESH", help="meshes, in a format that gim reads")
+    add("--out", required=True, type=Path, metavar="DIR", help="folder for all results; made if missing")
     add("--tools", nargs="+", choices=MEASURED_TOOLS, default=MEASURED_TOOLS, metavar="TOOL",
-        help="measure only these of: " + ", ".join(MEASURED_TOOLS))
+        help="measure only these tools, of: " + ", ".join(MEASURED_TOOLS))
     add("--sizes", nargs="+", type=int, default=[129, 257, 513], metavar="N",
         help="gim: sides of the square; charts get N*N samples (default 129 257 513)")
-    for name, what in (("psnr", "dB to reach"), ("bytes", "sizes to stay below"), ("quality", "qualities, 0..100")):
+    for name, what in (("psnr", "dB to reach"), ("bytes", "bytes not to exceed"), ("quality", "qualities, 0..100")):
         add(f"--{name}", nargs="+", type=float, default=[], metavar="X", help=f"gim: {what}")
-    add("--ratios", nargs="+", type=float, default=measure.RATIOS, metavar="R", help="simplification: shares to keep")
+    add("--ratios", nargs="+", type=float, default=measure.RATIOS, metavar="R",
+        help="simplification: parts of the mesh to keep, 0..1")
     add("--full-bits", nargs="+", type=int, default=measure.FULL_BITS, metavar="B",
         help="bits per coordinate of unsimplified meshes (default 8..16)")
     add("--simplified-bits", nargs="+", type=int, default=measure.SIMPLIFIED_BITS, metavar="B",
-        help="the same of simplified ones (default 7..14; more are not tried where they gain less than "
+        help="bits per coordinate of simplified meshes (default 7..14; stops when one more bit gains less than "
              f"{measure.SATURATED_DB} dB)")
     add("--recorded-rivals", type=Path, default=ROOT / "corpus" / "rivals.csv", metavar="CSV",
-        help="one more rival: a table with columns model, bytes_at_60dB, ...; left out where there is none")
+        help="one more rival: a table with columns model, bytes_at_60dB, ...; left out if the file is missing")
     add("--redo", nargs="+", choices=MEASURED_TOOLS, default=[], metavar="TOOL",
-        help="forget the rows that these tools have for the models, and measure them again")
-    add("--retry-failed", action="store_true", help="measure again what failed")
-    add("--plots-only", action="store_true", help="measure nothing; tables and pictures of the rows that are there")
-    add("--no-plots", action="store_true", help="no pictures (needs no matplotlib)")
-    add("--samples", type=int, default=500000, help="surface samples each way of a comparison (default %(default)s)")
-    add("--jobs", type=int, default=1, help="points to measure side by side; timings never are (default %(default)s)")
-    add("--timeout", type=float, default=1800, metavar="S", help="seconds that a program may take (default %(default)s)")
+        help="drop the rows of these tools for the models, and measure them again")
+    add("--retry-failed", action="store_true", help="measure failed settings again")
+    add("--plots-only", action="store_true", help="measure nothing; write tables and pictures of the recorded rows")
+    add("--no-plots", action="store_true", help="draw no pictures; needs no matplotlib")
+    add("--samples", type=int, default=500000, help="samples on each surface of a comparison (default %(default)s)")
+    add("--jobs", type=int, default=1,
+        help="points to measure side by side; decoders are always timed alone (default %(default)s)")
+    add("--timeout", type=float, default=1800, metavar="S",
+        help="seconds that a program may take (default %(default)s)")
     for name in PROGRAMS:
-        add("--" + name.replace("_", "-"), metavar="PATH", help=f"the program {name}; else build/ and PATH are searched")
+        add("--" + name.replace("_", "-"), metavar="PATH",
+            help=f"path of the program {name}; default: search build/ and PATH")
     arguments = parser.parse_args()
     if not (arguments.psnr or arguments.bytes or arguments.quality):
         arguments.psnr = [55, 60, 65, 70, 75, 80]
@@ -88,17 +93,17 @@ def parse_arguments():
 
 
 def lock(folder):
-    """One run at a time in a folder. The lock goes with the process."""
+    """Allows one run at a time in a folder. The lock ends with the process."""
     file = open(folder / "lock", "w", encoding="utf-8")  # pylint: disable=consider-using-with
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
-        die(f"another run is at work in {folder}")
+        die(f"{folder}: another run uses this folder; wait for it or choose another --out")
     return file
 
 
 def import_plots(unwanted):
-    """The module, or None with a note."""
+    """Returns the module plots. None, with a note, if matplotlib is missing."""
     if unwanted:
         return None
     try:
@@ -111,9 +116,9 @@ def import_plots(unwanted):
 
 
 class Progress:
-    """Counts and a guess of the time left, on stderr. Points of one tool are taken to last equally long."""
+    """Prints counts and a guess of the time left, on stderr. Assumes that all points of one tool take equally long."""
 
-    FIRST_GUESS = {True: 20, False: 1}  # seconds; gim's own, others
+    FIRST_GUESS = {True: 20, False: 1}  # seconds; True: gim, False: others
 
     def __init__(self, chains, jobs):
         self.lock = threading.Lock()
@@ -161,12 +166,12 @@ def check_models(models):
         if not model.is_file():
             die(f"{model}: no such file")
         if model.stem in names:
-            die(f"two models are called {model.stem}; results are kept by that name, so rename one")
+            die(f"{model}: two models are called {model.stem}, and results are kept by that name; rename one")
         names.add(model.stem)
 
 
 def available_tools(wanted, paths):
-    """Leaves out, with a note, what needs a program that is missing."""
+    """Leaves out, with a note, each tool whose program is missing."""
     def needed(tool):
         if curves.is_own(tool):
             return ["gim"]
@@ -200,7 +205,7 @@ def measure_all(arguments, models, results):
         if given[name] and not path:
             die(f"{given[name]}: no such program")
     if not paths["gim"]:
-        die(f"the program gim is missing: it measures everything. Build it: {PROGRAMS['gim']}; or name it with --gim")
+        die(f"the program gim is missing. It measures everything. Build it: {PROGRAMS['gim']}; or name it with --gim")
     tools = available_tools(arguments.tools, paths)
 
     programs = measure.Programs(paths, arguments.timeout)
@@ -211,7 +216,7 @@ def measure_all(arguments, models, results):
     old = {row["tool"] for row in results.rows.values() if row["model"] in names and row["tool"] in tools
            and curves.is_own(row["tool"]) and row["program"] != programs.versions["gim"]}
     if old:
-        say(f"note: kept rows of another build of gim; to measure them again: --redo {' '.join(sorted(old))}")
+        say(f"note: kept rows of another build of gim. To measure them again: --redo {' '.join(sorted(old))}")
 
     threads = 0 if arguments.jobs == 1 else max(1, (os.cpu_count() or 1) // arguments.jobs)
     laboratory = measure.Laboratory(programs, results, arguments.out, arguments.samples, threads)
@@ -239,7 +244,7 @@ def write_results(arguments, models, results, plots):
     failed = [row for of_model in rows.values() for row in of_model if row["status"] != "ok"]
     text = "\n\n".join([curves.size_table(rows, recorded), curves.normal_table(rows), curves.decode_table(rows)])
     if failed:
-        text += f"\n\n{len(failed)} settings gave no file:\n" + "\n".join(
+        text += f"\n\n{len(failed)} settings failed:\n" + "\n".join(
             f"- {r['model']}, {r['tool']}, {r['setting']}: {r['status'][len('failed: '):]}" for r in failed)
     (arguments.out / "tables.md").write_text(text + "\n", encoding="utf-8")
     print(text)
@@ -255,7 +260,7 @@ def interrupt(*_):
 def main():
     arguments = parse_arguments()
     signal.signal(signal.SIGTERM, interrupt)
-    signal.signal(signal.SIGINT, interrupt)  # ignored by default where a shell starts this in the background
+    signal.signal(signal.SIGINT, interrupt)  # a shell that starts this in the background ignores it
     check_models(arguments.models)
     plots = import_plots(arguments.no_plots)
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -265,7 +270,7 @@ def main():
         if not arguments.plots_only:
             measure_all(arguments, arguments.models, results)
     except KeyboardInterrupt:
-        say("\ninterrupted; what was measured is kept: run the same command again to go on")
+        say("\ninterrupted; the measured rows are kept. Run the same command again to go on")
         return 130
     write_results(arguments, arguments.models, results, plots)
     return 0

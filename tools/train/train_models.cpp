@@ -1,14 +1,14 @@
 // Prints new tables for format/trained_models.h, made from .gim files of the layout `gim` with one image:
 //   gim_train a.gim b.gim ...
-// Lossy positions train the tables for coefficients in frames, lossless ones those of plain ones, planes theirs; a table that no
-// file trains stays as it is. Weights decide which model takes a decision: put new weights into the header, build, encode
-// the files anew, and take the states from a second run.
+// Lossy positions train the tables for coefficients in frames, lossless positions those for plain coefficients, planes
+// their own. A table that no file trains stays unchanged. Weights decide which model takes a decision. So put new
+// weights into the header, build, encode the files again, and take the states from a second run.
 //
-// 1. Weights: per coefficient class the expected magnitude e = sum of weight * magnitude nearby is fitted so that the
-//    magnitude m, taken as geometric with mean e, costs fewest bits: (m + 1) log(1 + e) - m log e. Adam on the logarithms of
-//    the weights. Every file gives at most kMostEvents to a class, so that large files do not drown small ones.
-// 2. States: every model takes the start probability and age with which its first kMostDecisions decisions in each file
-//    cost fewest bits; a small price keeps rarely used models near the middle.
+// 1. Weights, per coefficient class. The expected magnitude is e = sum of weight * magnitude nearby. The fit makes the
+//    magnitude m, taken as geometric with mean e, cost fewest bits: (m + 1) log(1 + e) - m log e. Adam works on the
+//    logarithms of the weights. Each file gives at most kMostEvents to a class, so large files do not drown small ones.
+// 2. States. Each model takes the start probability and age with which its first kMostDecisions decisions in each file
+//    cost fewest bits. A small price keeps rarely used models near the middle.
 // Cost: a minute for 50 files. Deterministic.
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ constexpr double kLeastWeight = 1e-3;
 
 // The bands of an image, coarsest first.
 struct Level {
-    uint32_t columns = 0, rows = 0;  // of the image that they lead to
+    uint32_t columns = 0, rows = 0;  // of the image that the bands lead to
     std::vector<int32_t> values[3];
     OwnSharedRim rim{nullptr, 0};  // where mates share their details
 
@@ -51,7 +51,7 @@ struct Image {
     std::vector<Level> levels;
 };
 
-// A coder that only notes what it is asked to code.
+// A coder that only records the decisions.
 struct Listener {
     static constexpr bool kWrites = true;
     std::vector<std::pair<const BitModel*, uint8_t>> decisions;
@@ -88,7 +88,7 @@ Image blank_image(CoefficientKind kind, uint32_t exponent) {
     return image;
 }
 
-// The coefficients of a file's only image, and of its planes.
+// Reads the coefficients of a file's only image, and of its planes.
 Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
     Header header;
     const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
@@ -135,7 +135,7 @@ Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
     return Status::kOk;
 }
 
-// ---- weights ---------------------------------------------------------------------------------------------------------
+// ---- weights --------------------------------------------------------------------------------------------------------
 
 constexpr size_t kWeights = 11;  // members of BandWeights, in their order
 struct Event {
@@ -148,7 +148,7 @@ double magnitude_at(const Band& band, int64_t row, int64_t column, uint32_t k) {
     return magnitude_of(band.row(static_cast<uint32_t>(row))[static_cast<size_t>(column) * 3 + k]);
 }
 
-// What spec/gim-format.md, "Values", weighs.
+// Collects the magnitudes that spec/gim-format.md, "Values", weighs.
 Event event_at(const LevelBands& level, const LevelBands& parents, Orientation orientation, int64_t row, int64_t column,
                uint32_t k) {
     const Band &band = level.of(orientation), &parent = parents.of(orientation);
@@ -163,7 +163,7 @@ Event event_at(const LevelBands& level, const LevelBands& parents, Orientation o
     e.nearby[2] = at(row - 1, column - 1, k) + at(row - 1, column + 1, k);
     const int64_t r = row / 2, c = column / 2;
     e.nearby[3] = parent_at(r, c);
-    // The decoder weighs no neighbours of a parent that is not there.
+    // The decoder ignores the neighbours of a parent that does not exist.
     if (r < parent.rows && c < parent.columns)
         e.nearby[4] = parent_at(r - 1, c) + parent_at(r + 1, c) + parent_at(r, c - 1) + parent_at(r, c + 1);
     for (int64_t d = 0; d < 2; ++d) {
@@ -190,7 +190,7 @@ bool empty(const Band& band, uint32_t row, uint32_t column) {
     return true;
 }
 
-// The coefficients of one class, outside of empty blocks.
+// Returns the coefficients of one class that lie outside of empty blocks.
 std::vector<Event> events_of(std::vector<Image>& images, CoefficientKind kind, bool fine, Orientation orientation,
                              bool later) {
     std::vector<Event> all;
@@ -253,7 +253,7 @@ BandWeights fit_weights(const std::vector<Event>& events) {
     return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]};
 }
 
-// ---- states ----------------------------------------------------------------------------------------------------------
+// ---- states ---------------------------------------------------------------------------------------------------------
 
 std::string fit_states(std::vector<Image>& images, CoefficientKind kind) {
     using Bits = std::vector<uint8_t>;
@@ -299,7 +299,7 @@ std::string fit_states(std::vector<Image>& images, CoefficientKind kind) {
     return codes;
 }
 
-// Counts what a perfect coder would take.
+// Counts the bits that a perfect coder would take.
 struct Meter {
     static constexpr bool kWrites = true;
     double bits = 0;
@@ -325,7 +325,7 @@ double coded_bytes(Image& image) {
     return meter.bits / 8;
 }
 
-// ---- output ----------------------------------------------------------------------------------------------------------
+// ---- output ---------------------------------------------------------------------------------------------------------
 
 void print(const BandWeights& w) {
     std::printf("{%u, %u, %u, %u, %u, %u, %u, %u, %u, %u, %u}", w.left, w.above, w.corners, w.parent, w.beside_parent,
@@ -340,11 +340,11 @@ int run(std::span<char*> paths) {
         const std::span<const uint8_t> file = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
         const size_t first = images.size();
         if (Status s = read_images(file, &images); s != Status::kOk) {
-            std::fprintf(stderr, "gim_train: %s: no .gim file of layout gim with one image (status %d)\n", path,
+            std::fprintf(stderr, "gim_train: %s: not a .gim file of layout gim with one image (status %d)\n", path,
                          static_cast<int>(s));
             return 1;
         }
-        std::fprintf(stderr, "%s: bytes of coefficients with the present tables:", path);
+        std::fprintf(stderr, "%s: bytes of coefficients with the current tables:", path);
         for (size_t i = first; i < images.size(); ++i) std::fprintf(stderr, " %.0f", coded_bytes(images[i]));
         std::fprintf(stderr, "\n");
     }
