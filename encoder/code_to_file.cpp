@@ -19,7 +19,7 @@ Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const Triangl
     const ReferenceSurface surface(std::move(reference), options.threads);
     CompareOptions compare_options;
     compare_options.threads = options.threads;
-    compare_options.normals = true;
+    compare_options.normals = compare_options.defects = true;
 
     CodingParameters parameters;
     const PlaneMaker plane_maker(surface.mesh(), input, options);

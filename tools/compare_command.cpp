@@ -23,6 +23,21 @@ void print_topology(const char* which, const std::string& path, const TopologySu
     }
 }
 
+void print_defects(const Defects& d) {
+    std::printf("folded over                %s triangles, %.4f%% of the area\n", with_thousands(d.folded_faces).c_str(),
+                100 * d.folded_area);
+    if (d.largest_fold.faces > 0) {
+        std::printf("largest fold               %s triangles near (%.6g, %.6g, %.6g)\n",
+                    with_thousands(d.largest_fold.faces).c_str(), d.largest_fold.center[0], d.largest_fold.center[1],
+                    d.largest_fold.center[2]);
+    }
+    std::printf("edges folded back          %s (%s in the reference)\n", with_thousands(d.folded_back_edges).c_str(),
+                with_thousands(d.folded_back_edges_of_reference).c_str());
+    std::printf("normals off by > 20, > 45  %.4f%%, %.4f%% of the area\n", 100 * d.off_by_20, 100 * d.off_by_45);
+    std::printf("normals, 95 %%, 99 %%        %.2f, %.2f degrees\n", d.normals_p95, d.normals_p99);
+    std::printf("distance / RMS, 99.9 %%     %.2f, largest %.2f\n", d.p999_over_rms, d.max_over_rms);
+}
+
 }  // namespace
 
 int run_compare(const CompareCommand& command) {
@@ -31,7 +46,7 @@ int run_compare(const CompareCommand& command) {
     const Result<TriangleMesh> test = read_surface(command.test, command.level);
     if (!test.ok()) return report_error(command.test, test.error());
     CompareOptions options = command.options;
-    options.normals = true;
+    options.normals = options.defects = true;
     const Result<Comparison> compared = compare(reference.value(), test.value(), options);
     if (!compared.ok()) return report_error(command.reference + " and " + command.test, compared.error());
 
@@ -60,6 +75,7 @@ int run_compare(const CompareCommand& command) {
         std::printf("normals, mean angle        %.3f degrees (%.3f reference to test, %.3f test to reference)\n",
                     c.normals->mean, c.normals->to_test, c.normals->to_reference);
     }
+    if (c.defects) print_defects(*c.defects);
     return 0;
 }
 

@@ -33,7 +33,25 @@ ordered_json to_json(const Comparison& comparison) {
         json["normal_error"] = {
             {"to_test", normals->to_test}, {"to_reference", normals->to_reference}, {"mean", normals->mean}};
     }
+    if (comparison.defects) json["defects"] = to_json(*comparison.defects);
     return json;
+}
+
+ordered_json to_json(const Defects& defects) {
+    return {{"folded_faces", defects.folded_faces},
+            {"folded_area", defects.folded_area},
+            {"off_by_20", defects.off_by_20},
+            {"off_by_45", defects.off_by_45},
+            {"normals_p95", defects.normals_p95},
+            {"normals_p99", defects.normals_p99},
+            {"p999_over_rms", defects.p999_over_rms},
+            {"max_over_rms", defects.max_over_rms},
+            {"folded_back_edges", defects.folded_back_edges},
+            {"folded_back_edges_of_reference", defects.folded_back_edges_of_reference},
+            {"largest_fold",
+             {{"center", defects.largest_fold.center},
+              {"area", defects.largest_fold.area},
+              {"faces", defects.largest_fold.faces}}}};
 }
 
 ordered_json to_json(const EncodeReport& report) {

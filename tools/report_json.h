@@ -9,6 +9,7 @@
 namespace gim {
 
 nlohmann::ordered_json to_json(const TopologySummary& topology);
+nlohmann::ordered_json to_json(const Defects& defects);
 nlohmann::ordered_json to_json(const Comparison& comparison);
 nlohmann::ordered_json to_json(const EncodeReport& report);
 

@@ -1,6 +1,6 @@
 // Measures the distance between two surfaces, both ways (gim/encoder.h, "comparing").
 // In: two triangle meshes, of any topology. Out: area-weighted RMS and largest distances, PSNR; if asked for, the angle
-// between shading normals.
+// between shading normals, and visible defects.
 // Cost: O((|A| + |B| + samples) log); two meshes of 500,000 faces take a few seconds on one core.
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "encoder/base/result.h"
 #include "encoder/surface/closest_point.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/surface/defects.h"
 #include "encoder/surface/shading_normals.h"
 #include "encoder/surface/surface_samples.h"
 #include "gim/encoder.h"
@@ -65,7 +66,8 @@ struct Side {
 struct OneWay {
     bool has_area = false;
     double rms = 0, largest = 0;
-    double degrees = 0;  // mean angle between shading normals
+    double degrees = 0;   // mean angle between shading normals
+    PairedSamples pairs;  // empty unless normals or defects are asked for
 };
 
 // Sum and maximum of squared distances of points to a surface.
@@ -96,34 +98,40 @@ Squares squared_distances(const std::vector<Vec3>& points, const ClosestPointTre
     return total;
 }
 
-// Returns the sum of the angles between both surfaces' shading normals at the samples, in degrees. `found[i]` belongs
-// to sample i.
-double angle_sum(const Side& from, const SurfaceSamples& samples, const Side& to,
-                 const std::vector<ClosestPoint>& found, uint32_t threads) {
+// Returns the sum of the angles between both surfaces' shading normals at the samples, in degrees.
+double angle_sum(const Side& from, const Side& to, const PairedSamples& pairs, uint32_t threads) {
     constexpr double kDegrees = 180 / std::numbers::pi;
-    return parallel_sum(samples.points.size(), threads, [&](size_t i) {
-        const Vec2& b = samples.barycentrics[i];
+    return parallel_sum(pairs.found.size(), threads, [&](size_t i) {
+        const Vec2& b = pairs.samples.barycentrics[i];
         const Vec3 here =
-            shading_normal_at(from.mesh, from.normals, samples.triangles[i], {1 - b[0] - b[1], b[0], b[1]});
-        const Vec3 there = shading_normal_at(to.mesh, to.normals, found[i].triangle, found[i].barycentric);
+            shading_normal_at(from.mesh, from.normals, pairs.samples.triangles[i], {1 - b[0] - b[1], b[0], b[1]});
+        const Vec3 there = shading_normal_at(to.mesh, to.normals, pairs.found[i].triangle, pairs.found[i].barycentric);
         return kDegrees * std::atan2(here.cross(there).norm(), here.dot(there));
     });
 }
 
 // Tries vertices too, because the largest distance is usually at one. They do not enter the mean.
 OneWay distance_to(const Side& from, const Side& to, const CompareOptions& options) {
-    const SurfaceSamples samples = sample_by_area(from.mesh, options.samples, options.seed, options.threads);
-    std::vector<ClosestPoint> found(options.normals ? samples.points.size() : 0);
-    const Squares inside = squared_distances(samples.points, to.tree, options.threads, found);
-    const Squares corners = squared_distances(referenced_vertices(from.mesh), to.tree, options.threads);
     OneWay result;
+    result.pairs.samples = sample_by_area(from.mesh, options.samples, options.seed, options.threads);
+    const std::vector<Vec3>& points = result.pairs.samples.points;
+    result.pairs.found.resize(options.normals || options.defects ? points.size() : 0);
+    const Squares inside = squared_distances(points, to.tree, options.threads, result.pairs.found);
+    const Squares corners = squared_distances(referenced_vertices(from.mesh), to.tree, options.threads);
     result.largest = std::sqrt(std::max(inside.largest, corners.largest));
-    result.has_area = !samples.points.empty();
+    result.has_area = !points.empty();
     if (!result.has_area) return result;
-    const auto count = static_cast<double>(samples.points.size());
+    const auto count = static_cast<double>(points.size());
     result.rms = std::sqrt(inside.sum / count);
-    if (options.normals) result.degrees = angle_sum(from, samples, to, found, options.threads) / count;
+    if (options.normals) result.degrees = angle_sum(from, to, result.pairs, options.threads) / count;
     return result;
+}
+
+double p999_of_distance(const PairedSamples& pairs) {
+    std::vector<double> distances;
+    distances.reserve(pairs.found.size());
+    for (const ClosestPoint& point : pairs.found) distances.push_back(std::sqrt(point.squared_distance));
+    return percentile(distances, 0.999);
 }
 
 double bounding_diagonal(const std::vector<Vec3>& points) {
@@ -146,7 +154,7 @@ Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOpti
                      "the " + std::string(which) + " mesh has no area: all its triangles are degenerate"};
     };
     const auto normals_of = [&](const Mesh& mesh) {
-        return options.normals ? shading_normals(mesh) : std::vector<Vec3>();
+        return options.normals ? shading_normals(mesh, NormalWeight::kArea) : std::vector<Vec3>();
     };
     const ClosestPointTree test_tree(test, options.threads);
     const Side reference_side{mesh_, tree_, normals_of(mesh_)}, test_side{test, test_tree, normals_of(test)};
@@ -168,6 +176,14 @@ Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOpti
         result.normals = NormalError{.to_test = to_test.degrees,
                                      .to_reference = to_reference.degrees,
                                      .mean = (to_test.degrees + to_reference.degrees) / 2};
+    }
+    if (options.defects) {
+        result.defects = measure_defects(test, mesh_, tree_, to_reference.pairs, to_test.pairs, options.threads);
+        if (result.rms > 0) {
+            result.defects->max_over_rms = result.hausdorff / result.rms;
+            result.defects->p999_over_rms =
+                std::max(p999_of_distance(to_test.pairs), p999_of_distance(to_reference.pairs)) / result.rms;
+        }
     }
     return result;
 }

@@ -1,6 +1,7 @@
 #include "encoder/surface/shading_normals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace gim {
@@ -17,7 +18,10 @@ Vec3 area_vector(const Mesh& mesh, const Triangle& t) {
     return (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
 }
 
-// Returns for each vertex the first one at its position.
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+}  // namespace
+
 std::vector<uint32_t> first_at_position(const Mesh& mesh) {
     std::vector<uint32_t> order(mesh.positions.size()), first(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -36,14 +40,21 @@ std::vector<uint32_t> first_at_position(const Mesh& mesh) {
     return first;
 }
 
-}  // namespace
-
-std::vector<Vec3> shading_normals(const Mesh& mesh) {
+std::vector<Vec3> shading_normals(const Mesh& mesh, NormalWeight weight) {
     const std::vector<uint32_t> first = first_at_position(mesh);
     std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
     for (const Triangle& t : mesh.triangles) {
-        const Vec3 area = area_vector(mesh, t);
-        for (const uint32_t v : t) normals[first[v]] += area;
+        const Vec3 area = area_vector(mesh, t), unit = unit_or_zero(area);
+        for (size_t i = 0; i < 3; ++i) {
+            const Vec3& p = mesh.positions[t[i]];
+            if (weight == NormalWeight::kArea) {
+                normals[first[t[i]]] += area;
+            } else {
+                const double angle =
+                    angle_between(mesh.positions[t[(i + 1) % 3]] - p, mesh.positions[t[(i + 2) % 3]] - p);
+                normals[first[t[i]]] += angle * unit;
+            }
+        }
     }
     for (size_t v = 0; v < normals.size(); ++v) {
         if (first[v] == v) normals[v] = unit_or_zero(normals[v]);

@@ -93,6 +93,7 @@ struct CompareOptions {
     uint64_t seed = 1;     // the same seed gives the same figures
     uint32_t threads = 0;  // 0: all cores; the result does not depend on it
     bool normals = false;  // also measure Comparison::normals; takes about a fifth more time
+    bool defects = false;  // also measure Comparison::defects; takes about half more time
 };
 
 // Mean angle, in degrees, between the shading normal of a sample and that of the nearest point on the other surface.
@@ -101,6 +102,26 @@ struct CompareOptions {
 struct NormalError {
     double to_test = 0, to_reference = 0;  // with samples on the reference surface, on the test surface
     double mean = 0;                       // of the two
+};
+
+// What a person sees of a surface whose distances are small: folds, scratches, wrong shading. "The other face" is the
+// triangle of the other surface that is nearest to a point. Shading normals are here interpolated between
+// angle-weighted vertex normals; vertices at equal positions are one.
+struct Defects {
+    uint64_t folded_faces = 0;  // triangles of the test surface that look away from the other face at their centroid
+    double folded_area = 0;     // share of the test surface's area that looks away from the other face; 0..1
+    // Shares of the test surface's area whose shading normal is off by more than 20 and 45 degrees; 0..1.
+    double off_by_20 = 0, off_by_45 = 0;
+    double normals_p95 = 0, normals_p99 = 0;  // degrees; percentiles of that angle over the samples of both surfaces
+    double p999_over_rms = 0, max_over_rms = 0;  // 99.9th percentile and maximum of the distance, over Comparison::rms
+    // Edges where two triangles meet at more than 150 degrees between their normals.
+    uint64_t folded_back_edges = 0, folded_back_edges_of_reference = 0;
+    // The largest set of folded faces that hang together by corners. All zero if there is none.
+    struct Fold {
+        std::array<double, 3> center = {0, 0, 0};  // object units
+        double area = 0;                           // object units, squared
+        uint64_t faces = 0;
+    } largest_fold = {};
 };
 
 // Distances are in the unit of the meshes. Cost: O((|A|+|B|+samples) log) with a bounding-volume hierarchy.
@@ -114,6 +135,7 @@ struct Comparison {
     double hausdorff = 0;                     // the larger of the two
     double psnr = 0;                          // 20 log10(diagonal / rms); infinity when rms is 0
     std::optional<NormalError> normals = {};  // set if CompareOptions::normals is
+    std::optional<Defects> defects = {};      // set if CompareOptions::defects is
 };
 Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options);
 

@@ -1,0 +1,168 @@
+#include "encoder/surface/defects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "encoder/base/disjoint_sets.h"
+#include "encoder/base/parallel.h"
+#include "encoder/surface/shading_normals.h"
+
+namespace gim {
+
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kFoldedBack = -0.86602540378443864676;  // -cos 30 degrees
+
+Vec3 face_normal(const Mesh& mesh, const Triangle& t) {
+    const Vec3& a = mesh.positions[t[0]];
+    const Vec3 area = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
+    const double length = area.stableNorm();
+    return length > 0 ? Vec3(area / length) : Vec3::Zero();
+}
+
+// Angles, in degrees, between the shading normals of samples and of their closest points.
+std::vector<double> normal_angles(const Mesh& from, const std::vector<Vec3>& from_normals, const Mesh& to,
+                                  const std::vector<Vec3>& to_normals, const PairedSamples& pairs, uint32_t threads) {
+    std::vector<double> angles(pairs.samples.points.size());
+    parallel_blocks(angles.size(), 4096, threads, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Vec2& b = pairs.samples.barycentrics[i];
+            const Vec3 here =
+                shading_normal_at(from, from_normals, pairs.samples.triangles[i], {1 - b[0] - b[1], b[0], b[1]});
+            const Vec3 there = shading_normal_at(to, to_normals, pairs.found[i].triangle, pairs.found[i].barycentric);
+            angles[i] = kDegrees * std::atan2(here.cross(there).norm(), here.dot(there));
+        }
+    });
+    return angles;
+}
+
+double share_above(const std::vector<double>& values, double limit) {
+    const auto above = std::count_if(values.begin(), values.end(), [&](double v) { return v > limit; });
+    return static_cast<double>(above) / static_cast<double>(std::max<size_t>(1, values.size()));
+}
+
+double folded_share(const Mesh& test, const Mesh& reference, const PairedSamples& from_test, uint32_t threads) {
+    const size_t count = from_test.samples.points.size();
+    const double folded = parallel_sum(count, threads, [&](size_t i) {
+        const Vec3 here = face_normal(test, test.triangles[from_test.samples.triangles[i]]);
+        const Vec3 there = face_normal(reference, reference.triangles[from_test.found[i].triangle]);
+        return here.dot(there) < 0 ? 1.0 : 0.0;
+    });
+    return folded / static_cast<double>(std::max<size_t>(1, count));
+}
+
+}  // namespace
+
+std::vector<uint8_t> find_folded_faces(const Mesh& test, const Mesh& reference, const ClosestPointTree& tree,
+                                       uint32_t threads) {
+    std::vector<uint8_t> folded(test.triangles.size());
+    parallel_blocks(folded.size(), 2048, threads, [&](size_t, size_t begin, size_t end) {
+        uint32_t hint = kNone;
+        for (size_t f = begin; f < end; ++f) {
+            const Triangle& t = test.triangles[f];
+            const Vec3 centroid = (test.positions[t[0]] + test.positions[t[1]] + test.positions[t[2]]) / 3;
+            hint = tree.find(centroid, hint).triangle;
+            folded[f] = face_normal(test, t).dot(face_normal(reference, reference.triangles[hint])) < 0;
+        }
+    });
+    return folded;
+}
+
+std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh) {
+    struct Side {
+        uint64_t edge;
+        uint32_t face;
+    };
+    const std::vector<uint32_t> first = first_at_position(mesh);
+    std::vector<Side> sides;
+    sides.reserve(3 * mesh.triangles.size());
+    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        for (size_t i = 0; i < 3; ++i) {
+            const auto [a, b] = std::minmax(first[t[i]], first[t[(i + 1) % 3]]);
+            if (a != b) sides.push_back({uint64_t{a} << 32 | b, f});
+        }
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.face < b.face; });
+    std::vector<std::array<uint32_t, 2>> edges;
+    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
+        for (end = i + 1; end < sides.size() && sides[end].edge == sides[i].edge;) ++end;
+        if (end - i != 2) continue;
+        const Vec3 a = face_normal(mesh, mesh.triangles[sides[i].face]);
+        const Vec3 b = face_normal(mesh, mesh.triangles[sides[i + 1].face]);
+        if (a.dot(b) < kFoldedBack)
+            edges.push_back({static_cast<uint32_t>(sides[i].edge >> 32), static_cast<uint32_t>(sides[i].edge)});
+    }
+    return edges;
+}
+
+Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& folded) {
+    DisjointSets groups(mesh.positions.size());
+    for (size_t f = 0; f < folded.size(); ++f) {
+        if (!folded[f]) continue;
+        const Triangle& t = mesh.triangles[f];
+        groups.unite(t[0], t[1]);
+        groups.unite(t[0], t[2]);
+    }
+    struct Group {
+        Defects::Fold fold;
+        Vec3 moment = Vec3::Zero();
+    };
+    std::map<uint32_t, Group> found;
+    for (uint32_t f = 0; f < folded.size(); ++f) {
+        if (!folded[f]) continue;
+        const Triangle& t = mesh.triangles[f];
+        Group& group = found[groups.find(t[0])];
+        const double area = face_area(mesh, f);
+        group.fold.area += area;
+        group.fold.faces += 1;
+        group.moment += area / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
+    }
+    Group largest;
+    for (const auto& [name, group] : found) {
+        if (group.fold.area > largest.fold.area) largest = group;
+    }
+    if (largest.fold.area > 0) {
+        const Vec3 center = largest.moment / largest.fold.area;
+        largest.fold.center = {center.x(), center.y(), center.z()};
+    }
+    return largest.fold;
+}
+
+double percentile(std::vector<double>& values, double part) {
+    const double rank = std::ceil(part * static_cast<double>(values.size()));
+    const auto index = static_cast<size_t>(std::clamp(rank, 1.0, static_cast<double>(values.size()))) - 1;
+    std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(index), values.end());
+    return values[index];
+}
+
+Defects measure_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& reference_tree,
+                        const PairedSamples& from_test, const PairedSamples& from_reference, uint32_t threads) {
+    Defects defects;
+    const std::vector<uint8_t> folded = find_folded_faces(test, reference, reference_tree, threads);
+    defects.folded_faces = static_cast<uint64_t>(std::count(folded.begin(), folded.end(), 1));
+    defects.largest_fold = find_largest_fold(test, folded);
+    defects.folded_area = folded_share(test, reference, from_test, threads);
+    defects.folded_back_edges = find_folded_back_edges(test).size();
+    defects.folded_back_edges_of_reference = find_folded_back_edges(reference).size();
+
+    const std::vector<Vec3> test_normals = shading_normals(test, NormalWeight::kAngle),
+                            reference_normals = shading_normals(reference, NormalWeight::kAngle);
+    std::vector<double> angles = normal_angles(test, test_normals, reference, reference_normals, from_test, threads);
+    defects.off_by_20 = share_above(angles, 20);
+    defects.off_by_45 = share_above(angles, 45);
+    const std::vector<double> others =
+        normal_angles(reference, reference_normals, test, test_normals, from_reference, threads);
+    angles.insert(angles.end(), others.begin(), others.end());
+    defects.normals_p95 = percentile(angles, 0.95);
+    defects.normals_p99 = percentile(angles, 0.99);
+    return defects;
+}
+
+}  // namespace gim
