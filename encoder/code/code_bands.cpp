@@ -70,6 +70,11 @@ struct QuantizedBand {
     std::vector<float> details;
 };
 
+void turn_out_of(const DetailFrame& frame, float* detail) {
+    const std::array<float, 3> in_frame = {detail[0], detail[1], detail[2]};
+    out_of_frame(frame, in_frame.data(), detail);
+}
+
 QuantizedBand quantize(const RealBand& band, const FrameField& frames, const DetailSteps& steps,
                        Orientation orientation) {
     const size_t count = band.values.size() / 3;
@@ -86,12 +91,22 @@ QuantizedBand quantize(const RealBand& band, const FrameField& frames, const Det
     QuantizedBand result{round_band({local, band.rows, band.columns}, steps.in_frames), {}};
     result.details.resize(local.size());
     for (size_t i = 0; i < local.size(); ++i) result.details[i] = dequantize(result.integers[i], step[i]);
-    for (size_t i = 0; i < frame.size(); ++i) {
-        const std::array<float, 3> in_frame = {result.details[3 * i], result.details[3 * i + 1],
-                                               result.details[3 * i + 2]};
-        out_of_frame(frame[i], in_frame.data(), &result.details[3 * i]);
-    }
+    for (size_t i = 0; i < frame.size(); ++i) turn_out_of(frame[i], &result.details[3 * i]);
     return result;
+}
+
+// Returns the details that a decoder makes of a band in frames.
+std::vector<float> dequantized(const std::vector<int32_t>& integers, uint32_t columns, const FrameField& frames,
+                               const DetailSteps& steps, Orientation orientation) {
+    std::vector<float> details(integers.size());
+    for (uint32_t i = 0; i < details.size() / 3; ++i) {
+        const DetailFrame frame = frames.at(orientation, i / columns, i % columns);
+        float step[3];
+        steps_in(frame, steps, orientation, step);
+        for (size_t k = 0; k < 3; ++k) details[3 * i + k] = dequantize(integers[3 * i + k], step[k]);
+        turn_out_of(frame, &details[3 * i]);
+    }
+    return details;
 }
 
 float* detail_at(AnalysisLevel<float>& level, uint32_t side, Orientation orientation, uint32_t row, uint32_t column) {
@@ -163,6 +178,37 @@ QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding&
         decoded.base = restore<Irreversible97>(decoded, seams);
     }
     return {std::move(out), coding.in_frames ? std::move(decoded.base) : std::vector<float>()};
+}
+
+std::vector<std::vector<float>> decode_bands(const Pyramid<int32_t>& bands, const DetailCoding& coding,
+                                             const SeamTable* seams) {
+    const uint32_t steps = bands.steps();
+    std::vector<std::vector<float>> images(1);
+    for (const int32_t q : bands.base)
+        images[0].push_back(static_cast<float>(q) * low_band_step(coding.quantizer, steps));
+    Pyramid<float> one;
+    one.levels.resize(1);
+    for (uint32_t e = 1; e <= steps; ++e) {
+        one.columns = bands.columns_at(e);
+        one.rows = bands.rows_at(e);
+        const DetailSteps detail_steps = coding.steps_at(steps - e + 1);
+        const FrameField frames(images[e - 1].data(), low_count(one.columns), low_count(one.rows),
+                                detail_steps.cell_area);
+        const AnalysisLevel<int32_t>& level = bands.levels[e - 1];
+        const auto details = [&](const std::vector<int32_t>& integers, Orientation orientation) {
+            const uint32_t columns =
+                orientation == Orientation::kVertical ? low_count(one.columns) : high_count(one.columns);
+            return dequantized(integers, columns, frames, detail_steps, orientation);
+        };
+        one.levels[0] = {details(level.horizontal, Orientation::kHorizontal),
+                         details(level.vertical, Orientation::kVertical),
+                         details(level.diagonal, Orientation::kDiagonal)};
+        const OwnSharedRim rim(seams, one.columns);
+        copy_details(rim.view(), one.levels[0], one.columns);
+        one.base = images[e - 1];
+        images.push_back(restore<Irreversible97>(one, seams));
+    }
+    return images;
 }
 
 void code_steps(BandCoder<RangeEncoder>& coder, Pyramid<int32_t>& pyramid, uint32_t from_step, uint32_t to_level,

@@ -21,6 +21,10 @@ struct QuantizedImage {
 QuantizedImage quantize_bands(const Pyramid<float>& pyramid, const DetailCoding& coding,
                               const SeamTable* seams = nullptr);
 
+// The images that a decoder has on its way from such bands, the base first. details in frames only.
+std::vector<std::vector<float>> decode_bands(const Pyramid<int32_t>& bands, const DetailCoding& coding,
+                                             const SeamTable* seams = nullptr);
+
 // The base of positions is stored relative to the middle of their range.
 template <class Sample>
 void subtract_middle(Pyramid<Sample>* pyramid, uint32_t bits) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +18,9 @@
 
 namespace gim {
 
+// Changes the integer bands of some images before a lossy file codes them. first: number of the first of the images.
+using RepairBands = std::function<void(size_t first, std::span<Pyramid<int32_t>> bands, const Units& units)>;
+
 struct CodingParameters {
     bool lossless = true;  // keeps the quantized image exactly
     uint32_t bits = 12;    // quantizer: bits per coordinate of the largest box extent, 8..20
@@ -25,6 +29,7 @@ struct CodingParameters {
     std::vector<CodedPlane> planes;  // stored behind the levels
     std::string text;                // UTF-8; goes into a META chunk unless empty
     std::optional<Units> units;      // lossy: units of a fit, used instead of those of the images
+    RepairBands repair;              // lossy: mends what the quantizer spoils; empty: nothing does
     bool level_psnr = false;         // leaves room in the header for set_level_psnr
 };
 

@@ -21,6 +21,7 @@
 #include "encoder/code/code_bands.h"
 #include "encoder/fit/detail_basis.h"
 #include "encoder/fit/fitter.h"
+#include "encoder/fit/fold_repair.h"
 #include "encoder/fit/prices.h"
 #include "encoder/surface/surface_samples.h"
 #include "format/fuse.h"
@@ -58,7 +59,8 @@ Schedule schedule_of(CodedFit::Effort effort) {
     return {3, kLast};
 }
 
-constexpr double kDensity = 1.5;  // samples of the reference per face
+constexpr double kDensity = 1.5;                   // samples of the reference per face
+constexpr int kHeldRepairs = 2, kLastRepairs = 6;  // most passes
 constexpr int kMostSteps = 40;
 constexpr double kTolerance = 1e-4;
 
@@ -179,7 +181,8 @@ struct CodedFit::Impl {
           side(start.width()),
           seams(file_seams),
           ring_classes(classes_of(seams, side)),
-          seed(first_seed) {}
+          seed(first_seed),
+          repair(gluing, reference, frame, fitter.front(), {CodedPart{side, side, 0, 0, &seams, {}}}, fusing()) {}
 
     GridGluing gluing;
     FitFrame frame;
@@ -193,6 +196,7 @@ struct CodedFit::Impl {
     uint64_t rounds = 0;
     std::vector<Vec3> cycled_positions;  // from the last final fit, before its last rounds; in the frame
     uint64_t cycled_rounds = 0;
+    FoldRepair repair;
 
     void keep_as_cycled() {
         cycled_positions = fitter.positions();
@@ -204,7 +208,7 @@ struct CodedFit::Impl {
         rounds = cycled_rounds;
     }
 
-    // Returns the samples as interleaved triples in units, not rounded. place_units() is the inverse.
+    // Returns the samples as interleaved triples in units, not rounded.
     std::vector<float> samples_in(const Units& units) const {
         std::vector<float> image(3 * fitter.positions().size());
         for (size_t i = 0; i < fitter.positions().size(); ++i) {
@@ -215,15 +219,6 @@ struct CodedFit::Impl {
             }
         }
         return image;
-    }
-
-    void place_units(const std::vector<float>& image, const Units& units) {
-        std::vector<Vec3> positions(image.size() / 3);
-        for (size_t i = 0; i < image.size(); ++i) {
-            positions[i / 3][static_cast<int>(i % 3)] =
-                double{image[i]} * double{units.step} + double{units.origin[i % 3]};
-        }
-        fitter.place(frame.into(positions));
     }
 
     // Runs one round (see the head of this file). It needs no membrane, because the price does its work.
@@ -242,19 +237,28 @@ struct CodedFit::Impl {
         fitter.take_step(step, true);
     }
 
-    // Moves samples to where a decoder would put them.
-    void quantize(const Units& units) {
+    Pyramid<int32_t> quantized(const Units& units) const {
         Pyramid<float> bands = analyse<Irreversible97>(samples_in(units), side, &seams);
         subtract_middle(&bands, units.bits);
-        std::vector<float> image = quantize_bands(bands, detail_coding_of(units), &seams).image;
-        for (float& x : image) x += static_cast<float>(1 << (units.bits - 1));
-        const size_t ring = ring_classes.size();
-        const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
-        std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
-        std::vector<uint32_t> first(ring), members(ring);
-        fuse(side, ring_classes.data(), classes, image.data(),
-             {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
-        place_units(image, units);
+        return quantize_bands(bands, detail_coding_of(units), &seams).bands;
+    }
+
+    // Moves samples to where a decoder would put them.
+    void quantize(const Units& units, int repairs) {
+        Pyramid<int32_t> bands = quantized(units);
+        repair.repair({&bands, 1}, units, repairs);
+        fitter.place(repair.decode({&bands, 1}, units));
+    }
+
+    CloseSeams fusing() const {
+        return [this](std::vector<float>& image) {
+            const size_t ring = ring_classes.size();
+            const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
+            std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
+            std::vector<uint32_t> first(ring), members(ring);
+            fuse(side, ring_classes.data(), classes, image.data(),
+                 {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
+        };
     }
 };
 
@@ -267,6 +271,10 @@ CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mes
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
+void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
+    impl_->repair.repair({&bands, 1}, units, kLastRepairs);
+}
+
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);
     int done = 0;
@@ -274,7 +282,8 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
-            if (free == Free::kNormals) impl_->quantize(units);
+            if (free == Free::kNormals) impl_->quantize(units, effort == Effort::kSearch ? 0 : kHeldRepairs);
+            if (free == Free::kAll) impl_->fitter.unfold();
             impl_->round(units, free);
         }
     };

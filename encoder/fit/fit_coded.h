@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/fit.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
@@ -38,6 +39,8 @@ class CodedFit {
     // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
     // number of threads. Cost: 5, 24 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
+    // Repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
+    void repair(Pyramid<int32_t>& bands, const Units& units);
     // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();
 

@@ -52,6 +52,8 @@ class Fitter {
 
     const std::vector<Vec3>& positions() const { return x_; }
     const std::vector<bool>& held() const { return held_; }
+    // The sign that makes the image face outwards.
+    double front() const { return front_; }
     FitQuality quality() const;
     // positions: in the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }

@@ -24,6 +24,10 @@ namespace {
 // bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
 double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
 
+// What squeezing the surface costs in the map (parametrize.h). More leaves fewer folds and takes more bytes on smooth
+// scans and machined parts (spec/rationale.md). Lossless images have finer steps and need less.
+constexpr double kCodedSqueeze = 1, kLosslessSqueeze = 0.2;
+
 std::string percent(double part) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f%%", 100 * part);
@@ -79,15 +83,16 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     clock.begin(Stage::kParametrize);
     const Mesh& disk = cut.boundary.opened.mesh;
     const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
-    GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, {}, clock.progress()));
+    const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
+    ParametrizeOptions weighted;
+    weighted.squeeze = lossless ? (getenv("KAPPA") ? atof(getenv("KAPPA")) : kLosslessSqueeze) : kCodedSqueeze;
+    GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     square.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
         observer(show_map("map-even", "least stretch, " + percent(square.stretch_efficiency), cut.boundary.opened, uv));
     }
     if (options.density) {
-        ParametrizeOptions weighted;
-        const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
         GIM_TRY(first, sample_surface(cut.boundary, uv, options.side));
         weighted.importance = importance_from_error(disk, uv, first, lossless ? DensityOptions{} : kCodedDensity);
         GIM_TRY(adapted, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));

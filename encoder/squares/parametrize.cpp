@@ -8,6 +8,7 @@
 
 #include "encoder/base/result.h"
 #include "encoder/surface/progressive_mesh.h"
+#include "encoder/surface/refine.h"
 #include "encoder/surface/stretch.h"
 #include "encoder/surface/tutte.h"
 
@@ -15,9 +16,10 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kBaseInterior = 60;  // interior vertices of the base mesh, if collapses allow it
-constexpr int kBaseSweeps = 200;        // enough for the base mesh to converge
-constexpr double kLeastArea = 1e-3;     // smallest weight of a face, in mean face areas
+constexpr uint32_t kBaseInterior = 60;       // interior vertices of the base mesh, if collapses allow it
+constexpr int kBaseSweeps = 200;             // enough for the base mesh to converge
+constexpr double kLeastArea = 1e-3;          // smallest weight of a face, in mean face areas
+constexpr double kLeastSqueezedArea = 1e-2;  // the same for its squeeze
 
 bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
     std::vector<uint8_t> fixed(uv.size(), 1);
@@ -33,14 +35,20 @@ bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
 // Optimises the map on a mesh that is refined step by step.
 class Optimiser {
   public:
-    Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const std::vector<double>& importance,
-              std::vector<Vec2>& uv)
-        : mesh_(mesh), positions_(positions), importance_(importance), uv_(uv), metric_(mesh.half_edge_count() / 3) {
+    Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const ParametrizeOptions& options,
+              double surface, std::vector<Vec2>& uv)
+        : mesh_(mesh),
+          positions_(positions),
+          importance_(options.importance),
+          uv_(uv),
+          metric_(mesh.half_edge_count() / 3),
+          squeeze_(options.squeeze * surface * surface / 8) {
         double area = 0;
         for (uint32_t f = 0; f < metric_.size(); ++f) {
             if (mesh_.alive(f)) area += 2 * metric_of(f, 0).weight;
         }
         least_area_ = kLeastArea * area / static_cast<double>(metric_.size());
+        least_squeezed_area_ = kLeastSqueezedArea * surface / static_cast<double>(metric_.size());
         for (uint32_t f = 0; f < metric_.size(); ++f) {
             if (mesh_.alive(f)) metric_[f] = metric_of(f, least_area_);
         }
@@ -91,6 +99,7 @@ class Optimiser {
     FaceMetric metric_of(uint32_t f, double least_area) const {
         const uint32_t a = mesh_.origin(3 * f), b = mesh_.origin(3 * f + 1), c = mesh_.origin(3 * f + 2);
         FaceMetric metric = face_metric(positions_[a], positions_[b], positions_[c], least_area);
+        metric.squeeze = squeeze_ / std::max(2 * metric.weight, least_squeezed_area_);
         if (!importance_.empty()) metric.weight *= (importance_[a] + importance_[b] + importance_[c]) / 3;
         return metric;
     }
@@ -102,12 +111,14 @@ class Optimiser {
             star_.push_back({uv_[mesh_.target(h)],
                              uv_[mesh_.origin(prev(h))],
                              {m.squared_length[i], m.squared_length[(i + 1) % 3], m.squared_length[(i + 2) % 3]},
-                             m.weight});
+                             m.weight,
+                             m.squeeze});
         });
     }
     double star_energy_at(const Vec2& x) const {
         double energy = 0;
-        for (const StarTriangle& t : star_) energy += stretch_energy({t.squared_length, t.weight}, x, t.p1, t.p2);
+        for (const StarTriangle& t : star_)
+            energy += stretch_energy({t.squared_length, t.weight, t.squeeze}, x, t.p1, t.p2);
         return energy;
     }
 
@@ -117,7 +128,8 @@ class Optimiser {
     std::vector<Vec2>& uv_;
     std::vector<FaceMetric> metric_;
     std::vector<StarTriangle> star_;
-    double least_area_ = 0;
+    double squeeze_ = 0;  // weight of N is this over the face's area
+    double least_area_ = 0, least_squeezed_area_ = 0;
 };
 
 Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {
@@ -149,7 +161,7 @@ Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_
     simplify(hierarchy, mesh.positions, {boundary + kBaseInterior, true, sides});
     if (!tutte_map(hierarchy, uv)) return Error{Stage::kParametrize, "the base map could not be solved"};
 
-    Optimiser optimiser(hierarchy, mesh.positions, options.importance, uv);
+    Optimiser optimiser(hierarchy, mesh.positions, options, surface_area(mesh), uv);
     optimiser.sweep_until(kBaseSweeps, options.tolerance);
     const auto total = static_cast<double>(hierarchy.collapse_count());
     double sweep_at = options.growth * (hierarchy.vertex_count() - boundary);

@@ -19,6 +19,9 @@ struct ParametrizeOptions {
     int sweeps = 8;           // sweeps each time; more come closer to the optimum and take more time
     int final_sweeps = 40;    // most sweeps on the full mesh
     double tolerance = 2e-4;  // sweeping stops when a sweep gains less than this part of the energy
+    // How much a squeeze counts against the stretch of the same factor. 0: not at all; samples may crowd in one direction
+    // until a quantizer folds them over. 1: as much.
+    double squeeze = 0;
     // Per vertex: how much the stretch around it counts. Sample density follows its square root. Empty: 1 everywhere.
     std::vector<double> importance;
 };

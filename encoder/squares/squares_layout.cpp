@@ -19,8 +19,9 @@ class SquaresLayout final : public LayoutImages {
   public:
     SquaresLayout(Squares squares, const EncodeOptions& options)
         : squares_(std::move(squares)),
-          seed_(options.seed),
-          is_lossy_fit_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {}
+          is_lossy_fit_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
+        if (options.rate.kind != RateTarget::Kind::kLossless) make_fits(options.seed);
+    }
 
     void describe(EncodeReport& report) const override {
         report.layout = Layout::kGim;
@@ -38,7 +39,7 @@ class SquaresLayout final : public LayoutImages {
 
     void fit(const CodingParameters& parameters, CodedFit::Effort effort, StageClock& clock) override {
         clock.begin(Stage::kFit);
-        make_fits();
+        is_rough_ = effort == CodedFit::Effort::kSearch;
         if (!units_) units_ = units_of(squares_.images, parameters.bits);
         Units units = *units_;
         units.quantizer = quantizer_in_range(parameters.quantizer);
@@ -54,6 +55,11 @@ class SquaresLayout final : public LayoutImages {
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
         CodingParameters with_units = parameters;
         with_units.units = units_;
+        if (!is_rough_ && !fits_.empty()) {
+            with_units.repair = [this](size_t first, std::span<Pyramid<int32_t>> bands, const Units& units) {
+                for (size_t i = 0; i < bands.size(); ++i) fits_[first + i].repair(bands[i], units);
+            };
+        }
         return squares_writer(squares_.images, with_units);
     }
 
@@ -69,17 +75,17 @@ class SquaresLayout final : public LayoutImages {
     }
 
   private:
-    void make_fits() {
-        for (size_t i = fits_.size(); i < squares_.images.size(); ++i) {
-            fits_.emplace_back(squares_.images[i], file_seams(squares_.images[i]), squares_.surfaces[i], seed_);
+    void make_fits(uint64_t seed) {
+        for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
+            fits_.emplace_back(squares_.images[i], file_seams(squares_.images[i]), squares_.surfaces[i], seed);
             squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }
 
     Squares squares_;
-    uint64_t seed_;
     bool is_lossy_fit_;
-    std::vector<CodedFit> fits_;  // one per image, made when needed
+    bool is_rough_ = false;               // after a quick fit
+    mutable std::vector<CodedFit> fits_;  // one per image of a lossy file; mutable: repairing keeps search trees warm
     std::optional<Units> units_;  // of the first fit; samples fitted to a quantizer must be coded with the same steps
 };
 

@@ -76,6 +76,7 @@ class SquareCoder final : public LevelCoder {
     std::vector<uint8_t> side_exponents_, seams_;
     std::vector<SeamTable> seam_tables_;
     ImageBands bands_;
+    RepairBands repair_;
 };
 
 SquareCoder::SquareCoder(std::span<const SquareImage> images, const CodingParameters& parameters) {
@@ -86,6 +87,7 @@ SquareCoder::SquareCoder(std::span<const SquareImage> images, const CodingParame
     static_cast<Units&>(header_) = has_units ? *parameters.units : units_of(images, parameters.bits);
     header_.quantizer = 0;
     if (parameters.lossless) header_.tangential = header_.cell_area = 0;
+    if (!parameters.lossless) repair_ = parameters.repair;
 
     for (const SquareImage& image : images) {
         if (parameters.lossless) {
@@ -129,6 +131,7 @@ std::vector<std::vector<uint8_t>> SquareCoder::code_levels(const Header& header)
     std::vector<std::vector<uint8_t>> sizes(header.level_count), streams(header.level_count);
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         Pyramid<int32_t> bands = bands_.quantized(i, header, shared_seams(i));
+        if (repair_) repair_(i, {&bands, 1}, header);
         const uint32_t levels = header.level_count_of(i);
         const auto coded = code_bands(bands, levels, coefficient_kind_of(header), shared_seams(i));
         for (uint32_t k = 0; k < levels; ++k) {

@@ -9,7 +9,7 @@ namespace gim {
 
 FaceMetric face_metric(const Vec3& a, const Vec3& b, const Vec3& c, double least_area) {
     const double area = 0.5 * (b - a).cross(c - a).norm();
-    return {{(c - b).squaredNorm(), (a - c).squaredNorm(), (b - a).squaredNorm()}, 0.5 * std::max(area, least_area)};
+    return {{(c - b).squaredNorm(), (a - c).squaredNorm(), (b - a).squaredNorm()}, 0.5 * std::max(area, least_area), 0};
 }
 
 double stretch_energy(const FaceMetric& metric, const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -18,7 +18,7 @@ double stretch_energy(const FaceMetric& metric, const Vec2& a, const Vec2& b, co
     const Vec2 e0 = c - b, e1 = a - c, e2 = b - a;
     const double n = -metric.squared_length[0] * e1.dot(e2) - metric.squared_length[1] * e0.dot(e2) -
                      metric.squared_length[2] * e0.dot(e1);
-    return metric.weight * n / (d * d);
+    return (metric.weight / (d * d) + metric.squeeze) * n;
 }
 
 double stretch_efficiency(const Mesh& mesh, const std::vector<Vec2>& uv, double domain_area) {
@@ -50,7 +50,7 @@ double star_value(const std::vector<StarTriangle>& star, const Vec2& x) {
         if (!(d > 0)) return std::numeric_limits<double>::infinity();
         const double n =
             t.squared_length[0] * a.dot(b) - t.squared_length[1] * e0.dot(a) + t.squared_length[2] * e0.dot(b);
-        value += t.weight * n / (d * d);
+        value += (t.weight / (d * d) + t.squeeze) * n;
     }
     return value;
 }
@@ -69,12 +69,12 @@ StarEnergy star_energy(const std::vector<StarTriangle>& star, const Vec2& x) {
             t.squared_length[0] * a.dot(b) - t.squared_length[1] * e0.dot(a) + t.squared_length[2] * e0.dot(b);
         const Vec2 dn = -t.squared_length[0] * (a + b) + (t.squared_length[1] - t.squared_length[2]) * e0;
         const Vec2 dd(-e0.y(), e0.x());
-        const double r = 1 / d, w = t.weight * r * r;
-        sum.value += w * n;
-        sum.gradient += w * (dn - (2 * n * r) * dd);
+        const double r = 1 / d, w = t.weight * r * r, squeeze = 2 * t.squeeze * t.squared_length[0];
+        sum.value += (w + t.squeeze) * n;
+        sum.gradient += w * (dn - (2 * n * r) * dd) + t.squeeze * dn;
         const double k = 6 * n * r * r, m = 2 * r;
-        xx += w * (2 * t.squared_length[0] - 2 * m * dn.x() * dd.x() + k * dd.x() * dd.x());
-        yy += w * (2 * t.squared_length[0] - 2 * m * dn.y() * dd.y() + k * dd.y() * dd.y());
+        xx += squeeze + w * (2 * t.squared_length[0] - 2 * m * dn.x() * dd.x() + k * dd.x() * dd.x());
+        yy += squeeze + w * (2 * t.squared_length[0] - 2 * m * dn.y() * dd.y() + k * dd.y() * dd.y());
         xy += w * (-m * (dn.x() * dd.y() + dn.y() * dd.x()) + k * dd.x() * dd.y());
     }
     sum.hessian << xx, xy, xy, yy;

@@ -4,6 +4,11 @@
 // corners p0 p1 p2 in uv and q0 q1 q2 in space, the squared singular values of the map uv -> surface sum to
 //     a + c = N / D^2,   D = 2 * signed area in uv,   N = sum_i |q_j - q_k|^2 * -(e_j . e_k),   e_i = p_k - p_j,
 // so the squared L2 stretch is N / (2 D^2). It is unbounded as a triangle flattens, so its minimiser has no flips.
+//
+// Stretch punishes samples that lie far apart, not samples that crowd in one direction. A squeeze punishes them:
+//     1/a + 1/c = N / (4 A^2),   A = the triangle's area on the surface,
+// is the same sum for the inverse map. Stretch plus squeeze is the symmetric Dirichlet energy of Smith, Schaefer.
+// Bijective Parameterization with Free Boundaries. SIGGRAPH 2015.
 #pragma once
 
 #include <array>
@@ -18,6 +23,7 @@ namespace gim {
 struct FaceMetric {
     std::array<double, 3> squared_length;  // of the edge opposite each corner
     double weight = 0;                     // half the area on the surface (times importance)
+    double squeeze = 0;                    // weight of N alone; 0: squeezing is free
 };
 
 // `least_area` bounds the area in the weight from below, so that degenerate faces resist flipping too.
@@ -26,7 +32,7 @@ FaceMetric face_metric(const Vec3& a, const Vec3& b, const Vec3& c, double least
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 inline double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); }
 
-// Returns weight * N / D^2, or infinity if the triangle is flat or turned over.
+// Returns weight * N / D^2 + squeeze * N, or infinity if the triangle is flat or turned over.
 double stretch_energy(const FaceMetric& metric, const Vec2& a, const Vec2& b, const Vec2& c);
 
 // Returns 1 / (normalised L2 stretch)^2 of a map into a domain of area `domain_area`. Range 0..1; 1 means uniform and
@@ -38,7 +44,7 @@ double stretch_efficiency(const Mesh& mesh, const std::vector<Vec2>& uv, double 
 struct StarTriangle {
     Vec2 p1, p2;
     std::array<double, 3> squared_length;
-    double weight;
+    double weight = 0, squeeze = 0;
 };
 
 // Moves `x` by damped Newton steps that lower the energy of its star and never leave the star's kernel.

@@ -1,0 +1,444 @@
+#include "encoder/fit/fold_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "encoder/base/parallel.h"
+#include "encoder/code/code_bands.h"
+#include "encoder/code/coefficient_prices.h"
+#include "encoder/fit/image_surface.h"
+
+namespace gim {
+
+namespace {
+
+constexpr double kSteep = 0.03;  // cosine below which a face counts as folded
+constexpr double kFold = 20;     // bits that a folded face is worth at least
+constexpr double kTurn = 10;     // bits for each unit of the cosine below that
+// A bit lowers the squared distance, in squared steps, by the inverse of this at high rates (fit_coded.cpp).
+constexpr double kBitsPerDistance = 8.7;
+constexpr double kLeastGain = 4;       // bits
+constexpr double kMostSlope = 2;       // of a detail's response at depth 1, between neighbours; generous
+constexpr uint32_t kDeepest = 3;       // depth of the coarsest details that are changed
+constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
+
+// A detail of a part.
+struct Place {
+    uint32_t part, depth;
+    Orientation orientation;
+    uint32_t row, column;
+};
+
+struct Change {
+    Place place;
+    uint32_t component = 0;
+    int32_t by = 0;
+    Vec3 shift = Vec3::Zero();  // of a sample of weight 1, in the frame
+    double cost = 0;            // bits
+};
+
+// The samples that a detail moves, and the cells at them.
+struct Reach {
+    std::vector<std::pair<uint32_t, float>> samples;  // with their weights
+    std::vector<uint32_t> cells;
+};
+
+}  // namespace
+
+class FoldPass {
+  public:
+    FoldPass(FoldRepair& repair, std::span<Pyramid<int32_t>> bands, const Units& units)
+        : r_(repair),
+          bands_(bands),
+          coding_(detail_coding_of(units)),
+          unit_(double{units.step} * repair.frame_.scale),
+          prices_(bands),
+          sample_off_(repair.gluing_.sample_count(), kNone),
+          sample_stamp_(repair.gluing_.sample_count(), 0),
+          sample_slot_(repair.gluing_.sample_count(), 0),
+          cell_stamp_(repair.gluing_.kind.size(), 0),
+          margin_(repair.gluing_.kind.size(), 0) {
+        for (size_t p = 0; p < r_.parts_.size(); ++p) {
+            images_.push_back(decode_bands(bands[p], coding_, r_.parts_[p].seams));
+            rims_.emplace_back();
+            copies_.emplace_back();
+            const uint32_t steps = bands[p].steps();
+            for (uint32_t depth = 1; depth <= std::min(kDeepest, steps); ++depth) {
+                rims_.back().emplace_back(r_.parts_[p].seams, bands[p].columns_at(steps - depth + 1));
+                copies_.back().emplace_back();
+                const SharedRim rim = rims_.back().back().view();
+                rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+                    copies_.back().back().push_back(
+                        {rim.source_of(orientation, row, column), {orientation, row, column}});
+                });
+            }
+        }
+        x_ = r_.decode(bands, units);
+        find_owners();
+    }
+
+    // Returns the number of changes.
+    size_t run() {
+        const std::vector<uint32_t> cells = steep_cells();
+        size_t changes = 0;
+        for (const uint32_t cell : cells) {
+            if (cost_of_cell(cell) == 0) continue;
+            if (const auto best = best_change(cell)) apply(*best), ++changes;
+        }
+        return changes;
+    }
+
+  private:
+    // Which part each sample belongs to.
+    void find_owners() {
+        owner_.assign(x_.size(), 0);
+        if (r_.parts_.size() == 1) return;
+        for (uint32_t p = 0; p < r_.parts_.size(); ++p) {
+            const CodedPart& part = r_.parts_[p];
+            for (uint32_t row = 0; row < part.rows; ++row) {
+                for (uint32_t column = 0; column < part.columns; ++column) {
+                    const uint32_t v = sample_at(part, row, column);
+                    if (v != kNone) owner_[v] = p;
+                }
+            }
+        }
+    }
+
+    // Returns the sample of the image; kNone if it is not defined.
+    uint32_t sample_at(const CodedPart& part, uint32_t row, uint32_t column) const {
+        if (part.defined.empty()) return row * r_.gluing_.width + column;
+        if (!part.defined[size_t{row} * part.columns + column]) return kNone;
+        return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * r_.gluing_.width +
+               static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
+    }
+
+    Vec3 normal_of(const Triangle& t) const {
+        const Vec3& a = x_[t[0]];
+        return r_.front_ * direction_or((x_[t[1]] - a).cross(x_[t[2]] - a), Vec3::Zero());
+    }
+
+    double cosine(uint32_t slot, const Triangle& t) {
+        uint32_t& face = r_.nearest_[slot];
+        const Vec3 normal = normal_of(t);
+        if (face != kNone) {
+            const double stale = normal.dot(r_.reference_.normals[face]);
+            if (stale > kUnsuspicious) return stale;
+        }
+        face = r_.reference_.tree.find((x_[t[0]] + x_[t[1]] + x_[t[2]]) / 3, face).triangle;
+        return normal.dot(r_.reference_.normals[face]);
+    }
+
+    std::vector<uint32_t> steep_cells() {
+        std::vector<uint8_t> is_steep(r_.gluing_.kind.size());
+        parallel_blocks(is_steep.size(), 1024, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t cell = begin; cell < end; ++cell) {
+                const auto faces = split_cell(x_, r_.gluing_, static_cast<uint32_t>(cell));
+                double least = 1;
+                for (size_t half = 0; half < 2; ++half) {
+                    if (faces[half] != kNoFace)
+                        least = std::min(least, cosine(static_cast<uint32_t>(2 * cell + half), faces[half]));
+                }
+                is_steep[cell] = least < kSteep;
+                margin_[cell] = margin_of(faces, least);
+            }
+        });
+        std::vector<uint32_t> cells;
+        for (uint32_t cell = 0; cell < is_steep.size(); ++cell) {
+            if (is_steep[cell]) cells.push_back(cell);
+        }
+        return cells;
+    }
+
+    // Returns how far a corner of the cell may move against the others before a face can turn steep.
+    double margin_of(const std::array<Triangle, 2>& faces, double least_cosine) const {
+        if (least_cosine < kUnsuspicious) return 0;
+        double margin = std::numeric_limits<double>::infinity();
+        for (const Triangle& t : faces) {
+            if (t == kNoFace) continue;
+            const Vec3 a = x_[t[1]] - x_[t[0]], b = x_[t[2]] - x_[t[0]];
+            const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+            if (longest > 0) margin = std::min(margin, a.cross(b).norm() / std::sqrt(longest));
+        }
+        return margin;
+    }
+
+    // Uses the reference faces that were nearest when the pass began.
+    double cost_of_cell(uint32_t cell) const {
+        const auto faces = split_cell(x_, r_.gluing_, cell);
+        double cost = 0;
+        for (size_t half = 0; half < 2; ++half) {
+            if (faces[half] == kNoFace) continue;
+            const uint32_t slot = 2 * cell + static_cast<uint32_t>(half);
+            const uint32_t face = r_.nearest_[slot] != kNone ? r_.nearest_[slot] : r_.nearest_[slot ^ 1];
+            if (face == kNone) continue;
+            const double c = normal_of(faces[half]).dot(r_.reference_.normals[face]);
+            if (c < kSteep) cost += kFold + kTurn * (kSteep - c);
+        }
+        return cost;
+    }
+
+    struct Off {
+        Vec3 normal = Vec3::Zero();
+        double distance = 0;  // along the normal
+    };
+    const Off& off_of(uint32_t v) {
+        if (sample_off_[v] == kNone) {
+            const ClosestPoint at = r_.reference_.tree.find(x_[v], offs_.empty() ? kNone : last_face_);
+            last_face_ = at.triangle;
+            const Vec3& normal = r_.reference_.normals[at.triangle];
+            sample_off_[v] = static_cast<uint32_t>(offs_.size());
+            offs_.push_back({normal, (x_[v] - at.point).dot(normal)});
+        }
+        return offs_[sample_off_[v]];
+    }
+
+    // How much farther from the reference the samples get, in bits.
+    double cost_of_distance(const Reach& reach, const Vec3& shift) {
+        const double step = unit_ * double{coding_.quantizer};
+        double sum = 0;
+        for (const auto& [v, weight] : reach.samples) {
+            const Off& off = off_of(v);
+            const double by = double{weight} * shift.dot(off.normal);
+            sum += by * (2 * off.distance + by);
+        }
+        return kBitsPerDistance * sum / (step * step);
+    }
+
+    void move(const Reach& reach, const Vec3& shift) {
+        for (const auto& [v, weight] : reach.samples) x_[v] += double{weight} * shift;
+    }
+
+    uint32_t band_rows(const Place& p) const {
+        const Pyramid<int32_t>& pyramid = bands_[p.part];
+        const uint32_t rows = pyramid.rows_at(pyramid.steps() - p.depth + 1);
+        return p.orientation == Orientation::kHorizontal ? low_count(rows) : high_count(rows);
+    }
+    uint32_t band_columns(const Place& p) const {
+        const Pyramid<int32_t>& pyramid = bands_[p.part];
+        const uint32_t columns = pyramid.columns_at(pyramid.steps() - p.depth + 1);
+        return p.orientation == Orientation::kVertical ? low_count(columns) : high_count(columns);
+    }
+    Band band(const Place& p) {
+        const Pyramid<int32_t>& pyramid = bands_[p.part];
+        return bands_of(bands_[p.part], pyramid.steps() - p.depth).of(p.orientation);
+    }
+
+    // Returns the place whose integers count.
+    Place source_of(const Place& p) const {
+        const SharedRim rim = rims_[p.part][p.depth - 1].view();
+        if (!rim.is_copy(p.orientation, p.row, p.column)) return p;
+        const DetailPlace from = rim.source_of(p.orientation, p.row, p.column);
+        return {p.part, p.depth, from.orientation, from.row, from.column};
+    }
+
+    void find_reach(const Place& p) {
+        Reach& reach = reach_;
+        reach.samples.clear();
+        reach.cells.clear();
+        ++stamp_;
+        add_block(p.part, r_.responses_[p.part].at(p.depth, p.orientation, p.row, p.column));
+        for (const auto& [source, copy] : copies_[p.part][p.depth - 1]) {
+            if (source.orientation == p.orientation && source.row == p.row && source.column == p.column)
+                add_block(p.part, r_.responses_[p.part].at(p.depth, copy.orientation, copy.row, copy.column));
+        }
+        spread_over_classes();
+        // Neighbours move against each other by so much at most.
+        const double most = kMostSlope * unit_ * double{tangential_step_at(p)} / (1u << (p.depth - 1));
+        const uint32_t width = r_.gluing_.width;
+        for (const auto& [v, weight] : reach.samples) {
+            const uint32_t row = v / width, column = v % width;
+            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, r_.gluing_.height - 2); ++r) {
+                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c) {
+                    const uint32_t cell = r * (width - 1) + c;
+                    if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) continue;
+                    cell_stamp_[cell] = stamp_;
+                    if (margin_[cell] <= most) reach.cells.push_back(cell);
+                }
+            }
+        }
+    }
+
+    float tangential_step_at(const Place& p) const {
+        const DetailSteps steps = coding_.steps_at(p.depth);
+        return steps.of(p.orientation) * std::max(1.0f, steps.tangential);
+    }
+
+    void add_sample(uint32_t v, float weight) {
+        if (sample_stamp_[v] != stamp_) {
+            sample_stamp_[v] = stamp_;
+            sample_slot_[v] = static_cast<uint32_t>(reach_.samples.size());
+            reach_.samples.push_back({v, 0.0f});
+        }
+        reach_.samples[sample_slot_[v]].second += weight;
+    }
+
+    void add_block(uint32_t p, const ResponseBlock& block) {
+        const CodedPart& part = r_.parts_[p];
+        const float* weight = block.weights;
+        for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
+            for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
+                const uint32_t v = sample_at(part, row, column);
+                if (v != kNone) add_sample(v, *weight);
+            }
+        }
+    }
+
+    // Glued samples move by the mean over their class.
+    void spread_over_classes() {
+        const size_t count = reach_.samples.size();
+        std::vector<uint32_t> classes;
+        for (size_t i = 0; i < count; ++i) {
+            const uint32_t c = r_.gluing_.class_of[reach_.samples[i].first];
+            if (c != kNone) classes.push_back(c);
+        }
+        std::sort(classes.begin(), classes.end());
+        classes.erase(std::unique(classes.begin(), classes.end()), classes.end());
+        for (const uint32_t c : classes) {
+            const auto& members = r_.gluing_.shared[c];
+            for (const uint32_t v : members) add_sample(v, 0);
+            float sum = 0;
+            for (const uint32_t v : members) sum += reach_.samples[sample_slot_[v]].second;
+            for (const uint32_t v : members)
+                reach_.samples[sample_slot_[v]].second = sum / static_cast<float>(members.size());
+        }
+    }
+
+    std::optional<Change> best_change(uint32_t cell) {
+        const uint32_t width = r_.gluing_.width;
+        const uint32_t part = owner_[owned_corner(cell)];
+        const double row = cell / (width - 1) + 0.5 - r_.parts_[part].row;
+        const double column = cell % (width - 1) + 0.5 - r_.parts_[part].column;
+        std::optional<Change> best;
+        for (uint32_t depth = 1; depth <= rims_[part].size(); ++depth) {
+            for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
+                Place place{part, depth, orientation, 0, 0};
+                const double size = 1u << depth, reach = depth == 1 ? 1.3 : 1.0;
+                const double middle_row = row / size - (orientation == Orientation::kHorizontal ? 0 : 0.5);
+                const double middle_column = column / size - (orientation == Orientation::kVertical ? 0 : 0.5);
+                const auto first = [&](double middle) {
+                    return static_cast<uint32_t>(std::max(0.0, std::ceil(middle - reach)));
+                };
+                const auto last = [&](double middle, uint32_t count) {
+                    return std::min(static_cast<int64_t>(std::floor(middle + reach)), int64_t{count} - 1);
+                };
+                for (place.row = first(middle_row); place.row <= last(middle_row, band_rows(place)); ++place.row) {
+                    for (place.column = first(middle_column); place.column <= last(middle_column, band_columns(place));
+                         ++place.column)
+                        try_place(source_of(place), best);
+                }
+            }
+        }
+        if (best && best->cost > -kLeastGain) return {};
+        return best;
+    }
+
+    uint32_t owned_corner(uint32_t cell) const {
+        for (const uint32_t v : r_.gluing_.corners(cell)) {
+            if (r_.gluing_.is_defined(v)) return v;
+        }
+        return 0;
+    }
+
+    void try_place(const Place& p, std::optional<Change>& best) {
+        find_reach(p);
+        double before = 0;
+        for (const uint32_t cell : reach_.cells) before += cost_of_cell(cell);
+        if (before < kLeastGain) return;
+        const uint32_t e = bands_[p.part].steps() - p.depth + 1;
+        const DetailSteps steps = coding_.steps_at(p.depth);
+        const FrameField field(images_[p.part][e - 1].data(), low_count(bands_[p.part].columns_at(e)),
+                               low_count(bands_[p.part].rows_at(e)), steps.cell_area);
+        const DetailFrame frame = field.at(p.orientation, p.row, p.column);
+        float step[3];
+        steps_in(frame, steps, p.orientation, step);
+        const Band integers = band(p);
+        for (uint32_t k = 0; k < 3; ++k) {
+            const int32_t now = integers.row(p.row)[3 * p.column + k];
+            for (const int32_t by : {-1, 1}) {
+                Change change{p, k, by, Vec3::Zero(), 0};
+                const double length = unit_ * double{dequantize(now + by, step[k]) - dequantize(now, step[k])};
+                for (int i = 0; i < 3; ++i) change.shift[i] = length * double{frame.axis[k][i]};
+                const double limit = best ? best->cost : -kLeastGain;
+                change.cost = prices_.bits_of_change(integers, p.row, p.column, k, by) - before;
+                if (change.cost > limit) continue;
+                change.cost += cost_of_distance(reach_, change.shift);
+                if (change.cost > limit) continue;
+                move(reach_, change.shift);
+                for (const uint32_t cell : reach_.cells) change.cost += cost_of_cell(cell);
+                move(reach_, -change.shift);
+                if (change.cost < limit) best = change;
+            }
+        }
+    }
+
+    void apply(const Change& change) {
+        const Place& p = change.place;
+        band(p).row(p.row)[3 * p.column + change.component] += change.by;
+        find_reach(p);
+        move(reach_, change.shift);
+        for (const auto& [v, weight] : reach_.samples) sample_off_[v] = kNone;
+    }
+
+    FoldRepair& r_;
+    std::span<Pyramid<int32_t>> bands_;
+    DetailCoding coding_;
+    double unit_;  // length of a unit in the frame
+    CoefficientPrices prices_;
+    std::vector<std::vector<std::vector<float>>> images_;  // per part
+    std::vector<Vec3> x_;
+    std::vector<uint32_t> owner_, sample_off_;
+    std::vector<Off> offs_;
+    uint32_t last_face_ = kNone;
+    std::vector<std::vector<OwnSharedRim>> rims_;  // per part and depth
+    std::vector<std::vector<std::vector<std::pair<DetailPlace, DetailPlace>>>> copies_;
+    Reach reach_;
+    uint32_t stamp_ = 0;
+    std::vector<uint32_t> sample_stamp_, sample_slot_, cell_stamp_;
+    std::vector<double> margin_;  // per cell
+};
+
+FoldRepair::FoldRepair(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front,
+                       std::vector<CodedPart> parts, CloseSeams close)
+    : gluing_(gluing),
+      reference_(reference),
+      frame_(frame),
+      front_(front),
+      parts_(std::move(parts)),
+      close_(std::move(close)),
+      nearest_(2 * gluing.kind.size(), kNone) {
+    for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
+}
+
+std::vector<Vec3> FoldRepair::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
+    std::vector<float> image(3 * gluing_.sample_count());
+    for (size_t p = 0; p < parts_.size(); ++p) {
+        const CodedPart& part = parts_[p];
+        const std::vector<float> box = decode_bands(bands[p], detail_coding_of(units), part.seams).back();
+        for (uint32_t row = 0, i = 0; row < part.rows; ++row) {
+            for (uint32_t column = 0; column < part.columns; ++column, ++i) {
+                if (!part.defined.empty() && !part.defined[i]) continue;
+                const auto to = static_cast<size_t>((part.row + int64_t{row}) * gluing_.width + part.column + column);
+                for (size_t k = 0; k < 3; ++k)
+                    image[3 * to + k] = box[3 * size_t{i} + k] + static_cast<float>(1 << (units.bits - 1));
+            }
+        }
+    }
+    close_(image);
+    std::vector<Vec3> positions(gluing_.sample_count());
+    for (size_t i = 0; i < image.size(); ++i) {
+        positions[i / 3][static_cast<int>(i % 3)] = double{image[i]} * double{units.step} + double{units.origin[i % 3]};
+    }
+    return frame_.into(positions);
+}
+
+void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes) {
+    for (int pass = 0; pass < passes; ++pass) {
+        if (FoldPass(*this, bands, units).run() == 0) break;
+    }
+}
+
+}  // namespace gim

@@ -1,0 +1,64 @@
+// Repairs the folds that the quantizer leaves in a coded image. Finds faces of the decoded surface that look away from
+// the reference. Changes single coefficients around them by one step, where that pays.
+//
+// A change pays if what it saves in folds is worth more than what it adds in bits and in distance. Rate-distortion
+// optimised quantization does the same for distance alone: Ramchandran, Vetterli. Rate-Distortion Optimal Fast
+// Thresholding with Complete JPEG/MPEG Decoder Compatibility. 1994.
+//
+// Each pass decodes the image, visits its folded cells in order, and applies the best change at each at once. It
+// assumes that the frames of finer details stay. The next pass sees what the decoder really does.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "encoder/code/detail_response.h"
+#include "encoder/code/wavelet_analysis.h"
+#include "encoder/fit/fitter.h"
+#include "encoder/image/gluing.h"
+#include "encoder/surface/mesh.h"
+#include "format/container.h"
+#include "format/seam.h"
+
+namespace gim {
+
+// A part of an image that is coded by itself: all of a square, or the box of a chart.
+struct CodedPart {
+    uint32_t columns = 0, rows = 0;
+    int32_t column = 0, row = 0;       // of its first sample, in the image; a box may begin outside
+    const SeamTable* seams = nullptr;  // of a square whose mates share their details
+    std::vector<uint8_t> defined;      // per sample; empty: all are
+};
+
+// Closes the seams of a whole image as the decoder does. image: interleaved triples, in units.
+using CloseSeams = std::function<void(std::vector<float>& image)>;
+
+class FoldRepair {
+  public:
+    // Keeps references to gluing and reference. front: the sign that makes the image face outwards.
+    FoldRepair(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front,
+               std::vector<CodedPart> parts, CloseSeams close);
+
+    // bands: of each part; lossy. Makes at most `passes` passes. Deterministic at any number of threads.
+    // Cost: a decoding for each pass, and about a millisecond for each folded cell.
+    void repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes);
+
+    // Returns the decoded samples with closed seams, in the frame.
+    std::vector<Vec3> decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const;
+
+  private:
+    friend class FoldPass;
+
+    const GridGluing& gluing_;
+    const FitReference& reference_;
+    FitFrame frame_;
+    double front_;
+    std::vector<CodedPart> parts_;
+    CloseSeams close_;
+    std::vector<DetailResponses> responses_;  // per part
+    std::vector<uint32_t> nearest_;           // per slot: a face of the reference that was near
+};
+
+}  // namespace gim
