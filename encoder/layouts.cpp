@@ -23,7 +23,7 @@ Made squares_of(const MakeImages& in) {
 
 Made charts_of(const MakeImages& in) {
     GIM_TRY(charts, make_charts(in.mesh, in.options, in.clock, in.observer, in.report));
-    return charts_layout(std::move(charts));
+    return charts_layout(std::move(charts), in.mesh, in.options);
 }
 
 double efficiency_of_squares(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {

@@ -10,6 +10,7 @@
 #include "decoder/pyramid/arena.h"
 #include "decoder/pyramid/pyramid_decoder.h"
 #include "format/chart_border.h"
+#include "format/chart_ramp.h"
 #include "format/chart_table.h"
 #include "format/container.h"
 
@@ -33,8 +34,6 @@ struct DecodedChart {
     uint32_t first = 0;
     BorderChart border;
 };
-
-inline constexpr uint8_t kOnBorder = 0, kInside = 254, kUndefined = 255;
 
 // Arrays of a level in the caller's scratch.
 struct ChartWorkspace {

@@ -6,9 +6,6 @@
 
 namespace gim {
 
-// How many layers of samples inside a border get a part of its corrections.
-uint32_t chart_diffusion_width(uint32_t columns, uint32_t rows);
-
 // samples: flat triples. ws.point holds vertex numbers. If anything changes, ws.depth afterwards counts the layers that
 // got a part.
 void close_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, float* samples);

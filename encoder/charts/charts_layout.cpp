@@ -4,15 +4,33 @@
 #include <vector>
 
 #include "encoder/charts/chart_texels.h"
+#include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
+#include "encoder/fit/fold_repair.h"
 
 namespace gim {
 
 namespace {
 
+constexpr int kRepairPasses = 4;
+
+std::vector<CodedPart> parts_of(const ChartLevels& charts) {
+    std::vector<CodedPart> parts;
+    for (size_t c = 0; c < charts.charts.size(); ++c) {
+        const ChartBox& box = charts.charts[c];
+        parts.push_back({box.columns, box.rows, box.atlas_column, box.atlas_row, nullptr, charts.defined[c]});
+    }
+    return parts;
+}
+
 class ChartsLayout final : public LayoutImages {
   public:
-    explicit ChartsLayout(ChartLevels charts) : charts_(std::move(charts)) {}
+    ChartsLayout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options) : charts_(std::move(charts)) {
+        if (options.rate.kind == RateTarget::Kind::kLossless) return;
+        repair_ =
+            std::make_unique<FoldRepair>(charts_.image, mesh, parts_of(charts_),
+                                         [this](std::vector<float>& image) { close_chart_seams(charts_, image); });
+    }
 
     void describe(EncodeReport& report) const override {
         report.layout = Layout::kMcgim;
@@ -27,7 +45,13 @@ class ChartsLayout final : public LayoutImages {
     }
 
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
-        return charts_writer(charts_, parameters);
+        CodingParameters with_repair = parameters;
+        if (repair_) {
+            with_repair.repair = [this](size_t, std::span<Pyramid<int32_t>> bands, const Units& units) {
+                repair_->repair(bands, units, kRepairPasses);
+            };
+        }
+        return charts_writer(charts_, with_repair);
     }
 
     std::vector<uint8_t> plane_exponents(uint32_t side) const override {
@@ -41,12 +65,13 @@ class ChartsLayout final : public LayoutImages {
 
   private:
     ChartLevels charts_;
+    std::unique_ptr<FoldRepair> repair_;  // of a lossy file
 };
 
 }  // namespace
 
-std::unique_ptr<LayoutImages> charts_layout(ChartLevels charts) {
-    return std::make_unique<ChartsLayout>(std::move(charts));
+std::unique_ptr<LayoutImages> charts_layout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options) {
+    return std::make_unique<ChartsLayout>(std::move(charts), mesh, options);
 }
 
 }  // namespace gim

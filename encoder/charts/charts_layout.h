@@ -8,6 +8,7 @@
 
 namespace gim {
 
-std::unique_ptr<LayoutImages> charts_layout(ChartLevels charts);
+// mesh: the surface that the charts were made from. Its folds are repaired in lossy files; copied.
+std::unique_ptr<LayoutImages> charts_layout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options);
 
 }  // namespace gim

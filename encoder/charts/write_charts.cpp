@@ -120,7 +120,8 @@ class ChartCoder final : public LevelCoder {
         : header_(header_of(images, parameters)),
           charts_(images.charts),
           mates_(images.mates),
-          borders_(images.levels) {
+          borders_(images.levels),
+          repair_(parameters.lossless ? RepairBands() : parameters.repair) {
         const size_t count = charts_.size();
         const auto finest = static_cast<float>(parameters.lossless ? 1.0 : std::max(0.5, parameters.quantizer));
         bands_.lossless.resize(parameters.lossless ? count : 0);
@@ -150,6 +151,7 @@ class ChartCoder final : public LevelCoder {
     std::vector<uint32_t> mates_;
     std::vector<LevelBorders> borders_;
     ImageBands bands_;  // per chart
+    RepairBands repair_;
 };
 
 std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) const {
@@ -157,9 +159,10 @@ std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) 
     std::vector<Pyramid<int32_t>> bands;
     for (size_t c = 0; c < charts_.size(); ++c) {
         bands.push_back(bands_.quantized(c, header));
-        chain_base(&bands.back());
         widest = std::max(widest, charts_[c].columns);
     }
+    if (repair_) repair_(0, bands, header);
+    for (Pyramid<int32_t>& chart : bands) chain_base(&chart);
     BandModels models(coefficient_kind_of(header));
     BorderModels border_models;
     OwnBandWork work(widest);

@@ -32,6 +32,8 @@ namespace {
 
 constexpr uint32_t kUnfoldRounds = 4;  // first rounds of a schedule that unfold
 constexpr int kLastUnfoldings = 3;     // tries to unfold a fit with more folds than its start, before it is dropped
+constexpr uint64_t kSamplesPerFold =
+    8000;                              // a fit may add a fold for so many samples, since it removes most of its error
 constexpr double kCreased = 0.06;      // unfolding may do harm if more than this part of the surface is at creases
 constexpr double kUnfoldPrice = 1.06;  // factor of RMS distance that unfolding may cost: half a decibel
 
@@ -64,9 +66,10 @@ Result<void> check_input(const GeometryImage& image, const Mesh& reference, cons
     return {};
 }
 
-bool no_worse(const FitQuality& after, const FitQuality& before) {
+// few: number of folds that do not matter.
+bool no_worse(const FitQuality& after, const FitQuality& before, uint64_t few) {
     return after.to_image <= before.to_image && after.to_reference <= before.to_reference &&
-           after.folds <= before.folds;
+           after.folds <= std::max(before.folds, few);
 }
 
 double distance(const FitQuality& quality) { return std::max(quality.to_image, quality.to_reference); }
@@ -114,6 +117,7 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     const bool compare = before.folds > 0 && !options.thorough &&
                          (options.strength == FitOptions::Strength::kLoose ||
                           crease_share(reference.mesh, static_cast<double>(gluing.defined_count())) > kCreased);
+    const uint64_t few = gluing.defined_count() / kSamplesPerFold;
     Fitted result;
     result.positions = start;
     FitQuality after = before;
@@ -122,11 +126,11 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
         run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
         result.rounds += schedule.rounds;
         FitQuality reached = fitter.quality();
-        for (int again = 0; again < kLastUnfoldings && reached.folds > before.folds; ++again) {
+        for (int again = 0; again < kLastUnfoldings && reached.folds > std::max(before.folds, few); ++again) {
             fitter.unfold();
             reached = fitter.quality();
         }
-        if (!no_worse(reached, before)) continue;
+        if (!no_worse(reached, before, few)) continue;
         if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
             break;  // the unfolded fit is better
         after = reached;

@@ -49,8 +49,8 @@ struct Fitted {
 
 // In:  samples with (nearly) equal positions where they are glued, and the oriented surface they were taken from.
 //      Samples on input boundaries stay on the reference's boundary curve.
-// Out: samples whose surface has no cracks, no larger one-way distances than the start, and no more folds. The start
-//      itself if the fit finds no such samples.
+// Out: samples whose surface has no cracks, no larger one-way distances than the start, and no more folds, or one in
+//      some thousands of faces. The start itself if the fit finds no such samples.
 // Cost: O(samples + reference) a round; 257 x 257 loose: some seconds on two cores. The result does not depend on the
 //       number of threads.
 Result<Fitted> fit(const GeometryImage& start, const Mesh& reference, const FitOptions& options,

@@ -404,12 +404,24 @@ class FoldPass {
 FoldRepair::FoldRepair(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front,
                        std::vector<CodedPart> parts, CloseSeams close)
     : gluing_(gluing),
-      reference_(reference),
       frame_(frame),
+      reference_(reference),
       front_(front),
       parts_(std::move(parts)),
       close_(std::move(close)),
       nearest_(2 * gluing.kind.size(), kNone) {
+    for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
+}
+
+FoldRepair::FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector<CodedPart> parts, CloseSeams close)
+    : gluing_(image.gluing),
+      frame_(mesh),
+      own_reference_(std::make_unique<FitReference>(Mesh{frame_.into(mesh.positions), mesh.triangles})),
+      reference_(*own_reference_),
+      front_(front_side(frame_.into(image.positions), gluing_, reference_)),
+      parts_(std::move(parts)),
+      close_(std::move(close)),
+      nearest_(2 * gluing_.kind.size(), kNone) {
     for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
 }
 

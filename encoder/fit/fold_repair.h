@@ -11,12 +11,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "encoder/code/detail_response.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/fitter.h"
+#include "encoder/image/geometry_image.h"
 #include "encoder/image/gluing.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
@@ -41,6 +43,9 @@ class FoldRepair {
     FoldRepair(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front,
                std::vector<CodedPart> parts, CloseSeams close);
 
+    // The same for an image by itself. Keeps a reference to its gluing. mesh: its surface; copied.
+    FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector<CodedPart> parts, CloseSeams close);
+
     // bands: of each part; lossy. Makes at most `passes` passes. Deterministic at any number of threads.
     // Cost: a decoding for each pass, and about a millisecond for each folded cell.
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes);
@@ -52,8 +57,9 @@ class FoldRepair {
     friend class FoldPass;
 
     const GridGluing& gluing_;
-    const FitReference& reference_;
     FitFrame frame_;
+    std::unique_ptr<FitReference> own_reference_;  // or none
+    const FitReference& reference_;
     double front_;
     std::vector<CodedPart> parts_;
     CloseSeams close_;
