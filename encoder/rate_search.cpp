@@ -247,23 +247,25 @@ class RateSearch {
         }
     }
 
-    // Tries fitted samples at ever finer quantizers. Where that fails, or nothing is fitted, keeps the samples: at the
-    // finest quantizer they show what is in reach.
+    // Fits the samples to ever finer quantizers, if they can be fitted. Where that fails, keeps them: at the finest
+    // quantizer they show what is in reach.
     Result<Bytes> code_within_error(double quantizer) {
-        if (images_.is_fitted_to_quantizer()) {
+        const bool is_fitted = images_.is_fitted_to_quantizer();
+        if (is_fitted) {
             QuantizerBracket fits(Values::kDecibelPerOctave);
             const CodeFile fit = [&](double at) { return finally_fitted_file(at); };
             GIM_TRY(best, smallest_within_error(fits, quantizer, fit, Values::kMostErrorFits));
             if (!best.empty()) return best;
-            quantizer = std::exp2(Values::kFinest);
         }
         GIM_TRY(writer, images_.writer(parameters_));
         const CodeFile keep = [&](double at) -> Result<Bytes> { return writer.write(at); };
         QuantizerBracket files(Values::kPlainDecibelPerOctave);
-        for (const double first : {quantizer, std::exp2(Values::kFinest)}) {
-            GIM_TRY(best, smallest_within_error(files, first, keep, Values::kMostErrorFiles));
+        if (!is_fitted) {
+            GIM_TRY(best, smallest_within_error(files, quantizer, keep, Values::kMostErrorFiles));
             if (!best.empty()) return best;
         }
+        GIM_TRY(best, smallest_within_error(files, std::exp2(Values::kFinest), keep, Values::kMostErrorFiles));
+        if (!best.empty()) return best;
         return error_out_of_reach();
     }
 
@@ -285,8 +287,11 @@ class RateSearch {
     // samples may reject a file. Only as many as compare() takes may accept it.
     Result<double> error_margin(const Bytes& bytes) {
         const double allowed = target_.value * reference_.diagonal();
-        GIM_TRY(sampled, compare_file(bytes, reference_, quick_));
-        double distance = sampled.hausdorff;
+        const auto sampled = compare_file(bytes, reference_, quick_);
+        const bool has_area = sampled.ok() || sampled.error().stage != Stage::kCompare;
+        if (!has_area) return -Values::kMostMargin;  // the quantizer is so coarse that all samples are one
+        if (!sampled.ok()) return sampled.error();
+        double distance = sampled.value().hausdorff;
         if (distance <= allowed) {
             GIM_TRY(comparison, compare_file(bytes, reference_, full_));
             distance = comparison.hausdorff;

@@ -14,7 +14,8 @@ void QuantizerBracket::add(double quantizer, double margin) {
     std::optional<Tried>& same = margin >= 0 ? met_ : missed_;
     const bool is_first = !met_ && !missed_;
     if (margin < 0) {
-        const bool gains = is_first || now.margin >= best_miss_ + Values::kLeastGain;
+        const bool is_hopeless = now.margin <= -Values::kMostMargin;  // but finer ones may do
+        const bool gains = is_first || is_hopeless || now.margin >= best_miss_ + Values::kLeastGain;
         idle_ = gains ? 0 : idle_ + 1;
         best_miss_ = is_first ? now.margin : std::max(best_miss_, now.margin);
     }

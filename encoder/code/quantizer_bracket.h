@@ -12,6 +12,7 @@ class QuantizerBracket {
     explicit QuantizerBracket(double decibel_per_octave) : decibel_per_octave_(decibel_per_octave) {}
 
     // Takes the result of a file. margin: dB by which it is better than the target; negative if it misses the target.
+    // -RateSearchValues::kMostMargin tells that the file has no surface.
     void add(double quantizer, double margin);
 
     // Returns the next quantizer to try. Returns nothing if another file would hardly be smaller, or if none meets the

@@ -61,7 +61,14 @@ TEST(QuantizerBracket, GoesBeyondASmallMarginOfTheSamples) {
     const Found result =
         found(RateSearchValues::kFinest, [](double octave) { return std::min(0.1, 4 * (3 - octave)); });
     ASSERT_TRUE(result.octave.has_value());
-    EXPECT_GE(*result.octave, 2.9);
+    EXPECT_GE(*result.octave, 2.8);
+}
+
+TEST(QuantizerBracket, ComesBackFromQuantizersThatLeaveNoSurface) {
+    constexpr double kNothing = -RateSearchValues::kMostMargin;
+    const Found result = found(18, [](double octave) { return octave > 6 ? kNothing : 10 - octave; });
+    ASSERT_TRUE(result.octave.has_value());
+    EXPECT_GE(*result.octave, 5.9);
 }
 
 TEST(QuantizerBracket, EndsAtTheLastQuantizers) {
