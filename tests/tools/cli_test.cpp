@@ -118,7 +118,8 @@ TEST_F(Cli, TheLargestErrorCanBeAskedForInPercentAndInUnits) {
         EXPECT_LE(report["error"]["hausdorff"].get<double>(), 0.03 * diagonal + 1e-6) << length;
         EXPECT_GE(report["error"]["hausdorff"].get<double>(), 0.02 * diagonal) << length;
     }
-    const Outcome run = gim({"encode", mesh_path(), folder.file("b.gim"), "--size", "9", "--max-error", "0.001%"});
+    const Outcome run =
+        gim({"encode", mesh_path(), folder.file("b.gim"), "--size", "9", "--node-side", "9", "--max-error", "0.001%"});
     EXPECT_EQ(run.status, 1);
     EXPECT_NE(run.err.find("% of the diagonal) is out of reach"), std::string::npos) << run.err;
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.gim", "a.json"}));
