@@ -29,8 +29,8 @@ struct RateSearchValues {
     static constexpr double kNear = 0.25;  // octaves of the quantizer over which a fit can continue
     static constexpr double kMostStep = 4, kMostFinalStep = 2;  // octaves from one file to the next
 
-    // Searches for a largest distance. They are the same for fitted samples and for others. Margins are in dB by which
-    // the distance is below the target's.
+    // Searches for a largest distance, with fitted samples and with others. A margin is by how many dB the distance is
+    // below the target's.
     static constexpr int kMostErrorFits = 12, kMostErrorFiles = 32;
     static constexpr double kMostErrorStep = 1.5;   // octaves; long steps could miss the quantizers that are in reach
     static constexpr double kNarrowBracket = 0.04;  // octaves; 2 % of the bytes
@@ -44,7 +44,8 @@ struct RateSearchValues {
     static constexpr int kMostGuesses = 3;
     static constexpr double kNearEnough = 0.5;  // octaves
 
-    // Targets up to this PSNR, and from this largest distance on, also try squares of half the side: better on some models (spec/experiments.md).
+    // Targets up to this PSNR, and from this largest distance on, also try squares of half the side: better on some
+    // models (spec/experiments.md).
     static constexpr double kMostPsnrOfSmallerSides = 71;
     static constexpr double kLeastErrorOfSmallerSides = 0.004;  // diagonals; 129 x 129 samples often reach no less
     static constexpr uint32_t kLeastSideToHalve = 65;

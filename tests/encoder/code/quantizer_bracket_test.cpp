@@ -54,7 +54,7 @@ TEST(QuantizerBracket, NoiseDoesNotLeadItAstray) {
 TEST(QuantizerBracket, GivesUpWhereFinerQuantizersGainNothing) {
     const Found result = found(5, [](double octave) { return std::min(-1.0, -2 * octave); });
     EXPECT_FALSE(result.octave.has_value());
-    EXPECT_LE(result.files, 9);
+    EXPECT_LE(result.files, 8);
 }
 
 TEST(QuantizerBracket, GoesBeyondASmallMarginOfTheSamples) {
