@@ -1,5 +1,6 @@
 #include "encoder/check_options.h"
 
+#include <cmath>
 #include <string>
 
 #include "format/chart_table.h"
@@ -38,6 +39,9 @@ Result<void> check_options(const EncodeOptions& options) {
             break;
         case RateTarget::Kind::kPsnr:
             if (!(value > 0 && value <= 200)) return wrong("the PSNR must be above 0 and at most 200 dB");
+            break;
+        case RateTarget::Kind::kMaxError:
+            if (!(value > 0 && std::isfinite(value))) return wrong("the largest error must be above 0, and finite");
             break;
         case RateTarget::Kind::kBytes:
             if (!(value >= 1)) return wrong("the number of bytes must be at least 1");

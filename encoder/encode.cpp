@@ -7,11 +7,13 @@
 #include "encoder/base/stage_clock.h"
 #include "encoder/check_options.h"
 #include "encoder/choose_layout.h"
+#include "encoder/code/rate_target.h"
 #include "encoder/code_to_file.h"
 #include "encoder/layouts.h"
 #include "encoder/planes/input_colors.h"
 #include "encoder/squares/best_side.h"
 #include "encoder/surface/clean.h"
+#include "encoder/surface/compare_meshes.h"
 
 namespace gim {
 
@@ -34,6 +36,8 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     GIM_TRY(cleaned, clean(input, {.require_connected = false}));
     EncodeReport input_report;
     describe_input(input, cleaned, input_report);
+
+    options.rate = resolved_target(options.rate, bounding_diagonal(cleaned.mesh));
 
     if (options.layout == Layout::kAuto) options.layout = choose_layout(cleaned.mesh, options, clock);
     const LayoutEntry* layout = find_layout(options.layout);

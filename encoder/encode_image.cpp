@@ -6,9 +6,11 @@
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/check_options.h"
+#include "encoder/code/rate_target.h"
 #include "encoder/code_to_file.h"
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/squares_layout.h"
+#include "encoder/surface/compare_meshes.h"
 
 namespace gim {
 namespace {
@@ -24,6 +26,7 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     EncodeReport report;
     report.input_vertices = image.positions.size();
     report.input_triangles = surface.triangles.size();
+    options.rate = resolved_target(options.rate, bounding_diagonal(surface));
 
     // Levels coarser than the node grid cannot be closed, so they are not stored separately.
     options.side = image.side();

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "encoder/code/decode_surface.h"
+#include "encoder/code/quantizer_bracket.h"
 #include "encoder/code/rate_target.h"
 
 namespace gim {
@@ -21,10 +23,26 @@ using Values = RateSearchValues;
 // Returns the PSNR, in dB, of a file's decoded surface. Must give the same value for the same bytes.
 using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
 
+// Codes a file at a quantizer.
+using CodeFile = std::function<Result<Bytes>(double quantizer)>;
+
 std::string decimal(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2f", value);
     return text;
+}
+
+std::string four_digits(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+// Returns the value with three digits. Rounds up, so that a user may ask for what is written.
+double rounded_up(double value) {
+    if (!(value > 0)) return value;
+    const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
+    return std::ceil(value / digit) * digit;
 }
 
 Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
@@ -105,6 +123,8 @@ Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateT
             return search_psnr(writer, std::log2(first), target.value, judge);
         case RateTarget::Kind::kBytes:
             return search_bytes(writer, std::log2(first), target.value);
+        case RateTarget::Kind::kMaxError:
+            break;  // see RateSearch::code_within_error()
     }
     return Error{Stage::kCode, "unknown rate target"};
 }
@@ -125,6 +145,7 @@ class RateSearch {
     }
 
     Result<Bytes> run(double quantizer) {
+        if (target_.kind == RateTarget::Kind::kMaxError) return code_within_error(quantizer);
         if (!images_.is_fitted_to_quantizer()) return search(quantizer);
         if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
         GIM_TRY(nearer, approach(quantizer));
@@ -139,6 +160,14 @@ class RateSearch {
         images_.fit(parameters_, effort, clock_);
         GIM_TRY(writer, images_.writer(parameters_));
         return writer.write(quantizer);
+    }
+
+    // Fits in full. Adjusts the last full fit instead if its quantizer is near.
+    Result<Bytes> finally_fitted_file(double quantizer) {
+        const bool is_far =
+            finally_fitted_to_ == 0 || std::abs(std::log2(quantizer / finally_fitted_to_)) > Values::kNear;
+        if (is_far) finally_fitted_to_ = quantizer;
+        return fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust);
     }
 
     double slack_in_octaves() const {
@@ -173,11 +202,8 @@ class RateSearch {
     // quantizer that it is fitted to. A tenth of an octave finer would make it larger and farther from the surface.
     Result<Bytes> fit_to_target(double quantizer) {
         Bytes best;
-        double final_for = 0;  // quantizer of the last final fit
         for (int k = 0; k < Values::kMostFits; ++k) {
-            const bool is_far = k == 0 || std::abs(std::log2(quantizer / final_for)) > Values::kNear;
-            if (is_far) final_for = quantizer;
-            GIM_TRY(bytes, fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust));
+            GIM_TRY(bytes, finally_fitted_file(quantizer));
             GIM_TRY(octaves, room(bytes));
             GIM_TRY(is_met, meets_target(bytes));
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
@@ -221,9 +247,78 @@ class RateSearch {
         }
     }
 
+    // Fits the samples to ever finer quantizers, if they can be fitted. Where that fails, keeps them: at the finest
+    // quantizer they show what is in reach.
+    Result<Bytes> code_within_error(double quantizer) {
+        const bool is_fitted = images_.is_fitted_to_quantizer();
+        if (is_fitted) {
+            QuantizerBracket fits(Values::kDecibelPerOctave);
+            const CodeFile fit = [&](double at) { return finally_fitted_file(at); };
+            GIM_TRY(best, smallest_within_error(fits, quantizer, fit, Values::kMostErrorFits));
+            if (!best.empty()) return best;
+        }
+        GIM_TRY(writer, images_.writer(parameters_));
+        const CodeFile keep = [&](double at) -> Result<Bytes> { return writer.write(at); };
+        QuantizerBracket files(Values::kPlainDecibelPerOctave);
+        if (!is_fitted) {
+            GIM_TRY(best, smallest_within_error(files, quantizer, keep, Values::kMostErrorFiles));
+            if (!best.empty()) return best;
+        }
+        GIM_TRY(best, smallest_within_error(files, std::exp2(Values::kFinest), keep, Values::kMostErrorFiles));
+        if (!best.empty()) return best;
+        return error_out_of_reach();
+    }
+
+    // Codes files at the quantizers that the bracket asks for. Returns the smallest one that meets the target, or nothing.
+    Result<Bytes> smallest_within_error(QuantizerBracket& bracket, double first, const CodeFile& code, int most) {
+        Bytes best;
+        std::optional<double> quantizer = first;
+        for (int k = 0; k < most && quantizer; ++k) {
+            GIM_TRY(bytes, code(*quantizer));
+            GIM_TRY(margin, error_margin(bytes));
+            bracket.add(*quantizer, margin);
+            quantizer = bracket.next();
+            if (margin >= 0 && is_better(bytes, best)) best = std::move(bytes);
+        }
+        return best;
+    }
+
+    // Returns by how many dB the largest distance is below the target's. Sampled distances are never too large, so few
+    // samples may reject a file. Only as many as compare() takes may accept it.
+    Result<double> error_margin(const Bytes& bytes) {
+        const double allowed = target_.value * reference_.diagonal();
+        const auto sampled = compare_file(bytes, reference_, quick_);
+        const bool has_area = sampled.ok() || sampled.error().stage != Stage::kCompare;
+        if (!has_area) return -Values::kMostMargin;  // the quantizer is so coarse that all samples are one
+        if (!sampled.ok()) return sampled.error();
+        double distance = sampled.value().hausdorff;
+        if (distance <= allowed) {
+            GIM_TRY(comparison, compare_file(bytes, reference_, full_));
+            distance = comparison.hausdorff;
+        }
+        if (nearest_.empty() || distance < least_distance_) {
+            nearest_ = bytes;
+            least_distance_ = distance;
+        }
+        return 20 * std::log10(allowed / distance);
+    }
+
+    Result<Bytes> error_out_of_reach() const {
+        GIM_TRY(comparison, compare_file(nearest_, reference_, full_));
+        const double share = 100 / reference_.diagonal();
+        const double wanted = target_.value * reference_.diagonal(), reached = rounded_up(comparison.hausdorff);
+        return Error{Stage::kCode, "a largest error of " + four_digits(wanted) + " (" + four_digits(share * wanted) +
+                                       " % of the diagonal) is out of reach: the samples themselves reach " +
+                                       four_digits(reached) + " (" + four_digits(rounded_up(share * reached)) +
+                                       " %); take a larger --size (charts: --samples), or allow more"};
+    }
+
     LayoutImages& images_;
     CodingParameters parameters_;
-    double fitted_to_ = 0;  // quantizer of the last fit
+    double fitted_to_ = 0;          // quantizer of the last fit
+    double finally_fitted_to_ = 0;  // of the last full one
+    Bytes nearest_;                 // the file of the least largest distance so far
+    double least_distance_ = 0;
     const RateTarget target_;
     const ReferenceSurface& reference_;
     StageClock& clock_;

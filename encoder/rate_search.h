@@ -16,9 +16,12 @@ namespace gim {
 //   lossless  keeps the quantized images exactly
 //   quality   does not search
 //   psnr      returns the smallest file found whose PSNR is at least `value`; an Error names the best PSNR in reach
+//   error     returns the smallest file found whose largest distance is at most `value`, which is in diagonals; an Error
+//             names the distance in reach
 //   bytes     returns the best file found of at most `value` bytes; an Error names the smallest size in reach
 // Images that are fitted to their quantizer are fitted again for each quantizer; they keep the last fit. parameters:
-// planes and text. Cost: up to about 16 files, each fitted, decoded and compared. Constants: code/rate_target.h.
+// planes and text. Cost: up to about 16 files, or 32 for bytes and error if nothing is fitted; each fitted, decoded and
+// compared. Constants: code/rate_target.h.
 Result<std::vector<uint8_t>> search_rate(LayoutImages& images, const CodingParameters& parameters,
                                          const EncodeOptions& options, const ReferenceSurface& reference,
                                          StageClock& clock);

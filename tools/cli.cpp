@@ -1,5 +1,6 @@
 // The command line. CLI11 parses it into the structs that the commands take. The help texts are the manual.
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -37,12 +38,33 @@ CLI::Validator finite_range(double low, double high, const std::string& name) {
     return {check, name};
 }
 
+// Reads "0.5", in object units, or "0.1%", of the diagonal. Returns nothing if the text is neither, or not above 0.
+std::optional<RateTarget> max_error_target(std::string_view text) {
+    RateTarget target{RateTarget::Kind::kMaxError, 0, text.ends_with('%')};
+    if (target.in_diagonals) {
+        text.remove_suffix(1);
+        while (text.ends_with(' ')) text.remove_suffix(1);
+    }
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target.value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    if (target.in_diagonals) target.value /= 100;
+    return target.value > 0 && std::isfinite(target.value) ? std::optional(target) : std::nullopt;
+}
+
+CLI::Validator max_error_validator() {
+    const auto check = [](const std::string& text) -> std::string {
+        return max_error_target(text) ? "" : "must be a length above 0, as 0.5 or 0.1%, not " + text;
+    };
+    return {check, "LENGTH"};
+}
+
 struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
     bool even = false;
     const CLI::Option* size = nullptr;
     std::optional<double> psnr, quality;
+    std::string max_error;
     std::optional<uint64_t> bytes;
     uint32_t normals = 0;
     std::optional<uint32_t> colors;
@@ -59,11 +81,11 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
-    a.size =
-        sub->add_option("--size", a.command.options.side,
-                        "gim: samples per side; the next size has four times the samples. Default: 257, or with --psnr "
-                        "or --bytes a smaller size if its file is better")
-            ->check(side_validator(9, 4097));
+    a.size = sub->add_option(
+                    "--size", a.command.options.side,
+                    "gim: samples per side; the next size has four times the samples. Default: 257, or with --psnr, "
+                    "--max-error or --bytes a smaller size if its file is better")
+                 ->check(side_validator(9, 4097));
     sub->add_option("--node-side", a.command.options.node_side,
                     "gim: side of the coarsest level that stays closed. The cut's nodes lie on a grid of this side, or "
                     "on a finer one if the cut needs it")
@@ -87,6 +109,10 @@ void add_rate_options(CLI::App* sub, EncodeArguments& a) {
     rate->add_flag("--lossless", a.lossless, "Keep the quantized image exactly");
     rate->add_option("--psnr", a.psnr, "At least this PSNR in dB, of the decoded surface against the mesh")
         ->check(finite_range(1, 200, "DB"));
+    rate->add_option("--max-error", a.max_error,
+                     "At most this distance between the decoded surface and the mesh at any place, both ways: in the "
+                     "mesh's unit, or with % of the diagonal of its bounding box. Checked after decoding")
+        ->check(max_error_validator());
     rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
     rate->add_option("--quality", a.quality, "0 (smallest file) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
@@ -121,7 +147,7 @@ void add_plane_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option(
            "--plane-quality", a.plane_quality,
            "Quality of normal map and colours, 0 to 100 as in --quality. Both are always lossy. Default: the value of "
-           "--quality, 90 with --lossless, 75 with --psnr or --bytes")
+           "--quality, 90 with --lossless, else 75")
         ->check(finite_range(0, 100, "Q"));
 }
 
@@ -133,9 +159,10 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
         "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
         "size tells its side. gim imports it with the parametrization that it has.\n"
-        "Choose at most one of --lossless, --psnr, --bytes and --quality. Default: --quality 75.\n\n"
+        "Choose at most one of --lossless, --psnr, --max-error, --bytes and --quality. Default: --quality 75.\n\n"
         "  gim encode bunny.ply bunny.gim\n"
         "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
+        "  gim encode bunny.ply bunny.gim --max-error 0.5%\n"
         "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
         "  gim encode bunny.ply bunny.gim --size 129 --normals 512");
     sub->add_option("MESH", a.command.input, "Mesh to read")->required();
@@ -177,6 +204,7 @@ void apply_rate(EncodeArguments& a) {
     RateTarget& rate = a.command.options.rate;
     if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
     if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};
+    if (!a.max_error.empty()) rate = max_error_target(a.max_error).value_or(rate);
     if (a.bytes) rate = {RateTarget::Kind::kBytes, static_cast<double>(*a.bytes)};
     if (a.quality) rate = {RateTarget::Kind::kQuality, *a.quality};
 }

@@ -67,6 +67,9 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("bits per vertex", fixed(report.bits_per_vertex, 3)));
     print_line(format_line("bits per sample", fixed(report.bits_per_sample, 3)));
     print_line(format_line("PSNR", fixed(report.error.psnr, 2) + " dB"));
+    const double share = report.error.diagonal > 0 ? 100 * report.error.hausdorff / report.error.diagonal : 0;
+    print_line(format_line("largest error",
+                           scientific(report.error.hausdorff) + ", " + scientific(share) + " % of the diagonal"));
     print_line(format_line("RMS input to decoded", scientific(report.error.rms_to_test)));
     print_line(format_line("RMS decoded to input", scientific(report.error.rms_to_reference)));
     for (const LevelReport& level : report.levels) {

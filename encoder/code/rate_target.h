@@ -29,12 +29,25 @@ struct RateSearchValues {
     static constexpr double kNear = 0.25;  // octaves of the quantizer over which a fit can continue
     static constexpr double kMostStep = 4, kMostFinalStep = 2;  // octaves from one file to the next
 
+    // Searches for a largest distance, with fitted samples and with others. A margin is by how many dB the distance is
+    // below the target's.
+    static constexpr int kMostErrorFits = 12, kMostErrorFiles = 32;
+    static constexpr double kMostErrorStep = 1.5;   // octaves; long steps could miss the quantizers that are in reach
+    static constexpr double kNarrowBracket = 0.04;  // octaves; 2 % of the bytes
+    static constexpr double kLeastGain = 0.3;       // dB; the distance goes up and down by about 1 dB
+    static constexpr int kMostIdle = 3;             // finer files without that gain
+    static constexpr double kMostMargin = 400;      // dB; bounds the logarithm of a distance of 0
+    // Approximate PSNR minus 20 log10(diagonal / largest distance).
+    static constexpr double kRmsBelowMaximum = 18;
+
     // Trial codings that choose a cut.
     static constexpr int kMostGuesses = 3;
     static constexpr double kNearEnough = 0.5;  // octaves
 
-    // Targets up to this PSNR also try squares of half the side: better on some models (spec/experiments.md).
+    // Targets up to this PSNR, and from this largest distance on, also try squares of half the side: better on some
+    // models (spec/experiments.md).
     static constexpr double kMostPsnrOfSmallerSides = 71;
+    static constexpr double kLeastErrorOfSmallerSides = 0.004;  // diagonals; 129 x 129 samples often reach no less
     static constexpr uint32_t kLeastSideToHalve = 65;
 
     // Samples of a comparison, each way. The final decision about a target takes as many as compare().
@@ -44,8 +57,11 @@ struct RateSearchValues {
 // Returns true if the target needs a search for the quantizer, false if the target determines it.
 bool is_searched(const RateTarget& target);
 
-// Estimates by how many octaves the quantizer of a fitted file could be coarser to meet a target of bytes or PSNR.
-// bytes, psnr: of that file.
+// Returns the target with a largest error in diagonals of the input's bounding box. All functions below take it so.
+RateTarget resolved_target(const RateTarget& target, double diagonal);
+
+// Estimates by how many octaves the quantizer of a fitted file could be coarser to meet the target. bytes, psnr: of that
+// file. The largest error is estimated by the PSNR, because that of a single file is noise.
 double octaves_to(const RateTarget& target, double bytes, double psnr);
 
 // Returns the quantizer made coarser by `octaves`, at most `most` either way, within the range that searches cover.
@@ -54,6 +70,7 @@ double coarser_quantizer(double quantizer, double octaves, double most);
 // Returns the first quantizer to try.
 //   quality  75 is a step of 8 quantization steps of a 12-bit quantizer; 10 more halve it
 //   psnr     the one at which scanned surfaces have about this PSNR
+//   error    the one of the PSNR that usually comes with it
 //   others   that of quality 75
 double first_quantizer(const RateTarget& target, uint32_t bits);
 

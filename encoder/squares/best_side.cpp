@@ -21,10 +21,12 @@ EncodeOptions halved(EncodeOptions options) {
 }
 
 bool may_halve(const EncodeOptions& options) {
+    const RateTarget& rate = options.rate;
     const bool is_fine =
-        options.rate.kind == RateTarget::Kind::kPsnr && options.rate.value > RateSearchValues::kMostPsnrOfSmallerSides;
+        (rate.kind == RateTarget::Kind::kPsnr && rate.value > RateSearchValues::kMostPsnrOfSmallerSides) ||
+        (rate.kind == RateTarget::Kind::kMaxError && rate.value < RateSearchValues::kLeastErrorOfSmallerSides);
     return options.layout == Layout::kGim && options.try_smaller_sides &&
-           options.side >= RateSearchValues::kLeastSideToHalve && is_searched(options.rate) && !is_fine;
+           options.side >= RateSearchValues::kLeastSideToHalve && is_searched(rate) && !is_fine;
 }
 
 }  // namespace

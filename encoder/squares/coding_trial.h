@@ -11,7 +11,7 @@ namespace gim {
 
 class CodingTrial {
   public:
-    // Keeps the surface. `options` must have a PSNR or a size as the target. Codes `example` to find out roughly which
+    // Keeps the surface. `options` must have a target that is searched for. Codes `example` to find out roughly which
     // quantizer the target asks for. Cost: 5 to 15 rounds of CodedFit.
     CodingTrial(const Mesh& surface, const EncodeOptions& options, const SquareImage& example);
 

@@ -134,7 +134,10 @@ double p999_of_distance(const PairedSamples& pairs) {
     return percentile(distances, 0.999);
 }
 
-double bounding_diagonal(const std::vector<Vec3>& points) {
+}  // namespace
+
+double bounding_diagonal(const Mesh& mesh) {
+    const std::vector<Vec3> points = referenced_vertices(mesh);
     Vec3 low = points.front(), high = low;
     for (const Vec3& p : points) {
         low = low.cwiseMin(p);
@@ -143,10 +146,8 @@ double bounding_diagonal(const std::vector<Vec3>& points) {
     return (high - low).norm();
 }
 
-}  // namespace
-
 ReferenceSurface::ReferenceSurface(Mesh mesh, uint32_t threads)
-    : mesh_(std::move(mesh)), tree_(mesh_, threads), diagonal_(bounding_diagonal(referenced_vertices(mesh_))) {}
+    : mesh_(std::move(mesh)), tree_(mesh_, threads), diagonal_(bounding_diagonal(mesh_)) {}
 
 Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOptions& options) const {
     const auto no_area = [](const char* which) {

@@ -7,6 +7,9 @@
 
 namespace gim {
 
+// Returns the diagonal of the bounding box of the vertices that triangles use.
+double bounding_diagonal(const Mesh& mesh);
+
 class ReferenceSurface {
   public:
     // Keeps the mesh. Its positions must be finite and its indices in range.
@@ -15,6 +18,7 @@ class ReferenceSurface {
     // Does what compare() does. The positions of `test` must be finite and its indices in range.
     Result<Comparison> compare(const Mesh& test, const CompareOptions& options) const;
     const Mesh& mesh() const { return mesh_; }
+    double diagonal() const { return diagonal_; }
 
   private:
     Mesh mesh_;

@@ -106,6 +106,25 @@ TEST_F(Cli, EncodePrintsFiguresAndWritesTheReport) {
     EXPECT_GT(report["error"]["psnr"], 40);
 }
 
+TEST_F(Cli, TheLargestErrorCanBeAskedForInPercentAndInUnits) {
+    const json before = json::parse(load_text(shared_folder->file("report.json")));
+    const double diagonal = before["error"]["diagonal"];
+    for (const std::string& length : {std::string("3%"), std::string("3 %"), std::to_string(0.03 * diagonal)}) {
+        const Outcome run = gim({"encode", mesh_path(), folder.file("a.gim"), "--size", "33", "--fit", "none",
+                                 "--max-error", length, "--json", folder.file("a.json")});
+        ASSERT_EQ(run.status, 0) << length << run.err;
+        EXPECT_NE(run.out.find("largest error"), std::string::npos);
+        const json report = json::parse(load_text(folder.file("a.json")));
+        EXPECT_LE(report["error"]["hausdorff"].get<double>(), 0.03 * diagonal + 1e-6) << length;
+        EXPECT_GE(report["error"]["hausdorff"].get<double>(), 0.02 * diagonal) << length;
+    }
+    const Outcome run =
+        gim({"encode", mesh_path(), folder.file("b.gim"), "--size", "9", "--node-side", "9", "--max-error", "0.001%"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("% of the diagonal) is out of reach"), std::string::npos) << run.err;
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.gim", "a.json"}));
+}
+
 TEST_F(Cli, QuietSaysNothingAndJsonCanGoToStdout) {
     const Outcome quiet =
         gim({"encode", mesh_path(), folder.file("a.gim"), "--size", "33", "--node-side", "9", "--quiet"});
@@ -546,6 +565,19 @@ TEST_F(Cli, WrongUsageEndsWithStatusTwo) {
                                                {"encode", mesh_path(), out, "--bits", "7"},
                                                {"encode", mesh_path(), out, "--bits", "21"},
                                                {"encode", mesh_path(), out, "--psnr", "nan"},
+                                               {"encode", mesh_path(), out, "--max-error", ""},
+                                               {"encode", mesh_path(), out, "--max-error", "0"},
+                                               {"encode", mesh_path(), out, "--max-error", "-1"},
+                                               {"encode", mesh_path(), out, "--max-error", "nan"},
+                                               {"encode", mesh_path(), out, "--max-error", "inf%"},
+                                               {"encode", mesh_path(), out, "--max-error", "%"},
+                                               {"encode", mesh_path(), out, "--max-error", "5 %x"},
+                                               {"encode", mesh_path(), out, "--max-error", "0.5mm"},
+                                               {"encode", mesh_path(), out, "--max-error", "1e400"},
+                                               {"encode", mesh_path(), out, "--max-error", "1", "--psnr", "60"},
+                                               {"encode", mesh_path(), out, "--max-error", "1", "--lossless"},
+                                               {"encode", mesh_path(), out, "--max-error", "1%", "--bytes", "900"},
+                                               {"encode", mesh_path(), out, "--max-error", "1%", "--quality", "9"},
                                                {"encode", mesh_path(), out, "--bytes", "0"},
                                                {"encode", mesh_path(), out, "--quality", "101"},
                                                {"encode", mesh_path(), out, "--layout", "spiral"},
@@ -573,8 +605,8 @@ TEST_F(Cli, HelpAndVersionAreNoErrors) {
     const Outcome help = gim({"encode", "--help"});
     EXPECT_EQ(help.status, 0);
     for (const char* option :
-         {"--layout", "--size", "--samples", "--charts", "--bits", "--lossless", "--psnr", "--bytes", "--quality",
-          "--normals", "--seed", "--threads", "--json", "--quiet", "--node-side", "--fit", "--even"}) {
+         {"--layout", "--size", "--samples", "--charts", "--bits", "--lossless", "--psnr", "--max-error", "--bytes",
+          "--quality", "--normals", "--seed", "--threads", "--json", "--quiet", "--node-side", "--fit", "--even"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
 }

@@ -112,7 +112,7 @@ struct Defects {
     double folded_area = 0;     // share of the test surface's area that looks away from the other face; 0..1
     // Shares of the test surface's area whose shading normal is off by more than 20 and 45 degrees; 0..1.
     double off_by_20 = 0, off_by_45 = 0;
-    double normals_p95 = 0, normals_p99 = 0;  // degrees; percentiles of that angle over the samples of both surfaces
+    double normals_p95 = 0, normals_p99 = 0;     // degrees; percentiles of that angle over the samples of both surfaces
     double p999_over_rms = 0, max_over_rms = 0;  // 99.9th percentile and maximum of the distance, over Comparison::rms
     // Edges where two triangles meet at more than 150 degrees between their normals.
     uint64_t folded_back_edges = 0, folded_back_edges_of_reference = 0;
@@ -163,11 +163,13 @@ struct RateTarget {
     enum class Kind {
         kLossless,  // the decoded image equals the quantized image
         kPsnr,      // value: least PSNR of the decoded surface against the input mesh, in dB
+        kMaxError,  // value: largest distance between the decoded surface and the input mesh, both ways, above 0
         kBytes,     // value: largest size of the whole file, in bytes
         kQuality,   // value: 0 (smallest file) .. 100 (finest); 10 more halve the quantizer step
     };
     Kind kind = Kind::kQuality;
     double value = 75;
+    bool in_diagonals = false;  // kMaxError: `value` counts bounding-box diagonals of the input, not object units
 };
 
 // How far samples may move to bring the image's surface nearer to the input.
@@ -185,8 +187,8 @@ struct EncodeOptions {
     // kGim: samples per side of the square, 2^j + 1. Twice the side takes four times the time and memory. The largest
     // component gets this side; smaller components get less, by area.
     uint32_t side = 257;
-    // kGim with a coarse target of PSNR or bytes: also codes images of half the side, halves again while that gives a
-    // better file, and keeps the best file. Takes about 1.5 times the time. The cut is chosen at the first half.
+    // kGim with a coarse target of PSNR, distance or bytes: also codes images of half the side, halves again while that
+    // gives a better file, and keeps the best file. Takes about 1.5 times the time. The cut is chosen at the first half.
     bool try_smaller_sides = false;
     uint32_t samples = 66049;  // kMcgim: largest width * height
     // kMcgim: wanted number of charts; 0: chosen by the shape. More are made if topology or flattening needs them.
