@@ -85,7 +85,7 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     ParametrizeOptions weighted;
-    weighted.squeeze = lossless ? (getenv("KAPPA") ? atof(getenv("KAPPA")) : kLosslessSqueeze) : kCodedSqueeze;
+    weighted.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
     GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     square.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
