@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/stb.h"
+#include "tools/canvas.h"
 
 namespace gim {
 namespace {
@@ -17,17 +17,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr uint32_t kSupersampling = 3;
 constexpr double kDistance = 4.5;  // from the eye to the centre, in radii of the model: a long lens
 constexpr double kFilled = 0.92;   // part of the picture's side that the model fills
-constexpr uint32_t kCaptionHeight = 40;
-constexpr double kLineBias = 1e-3;  // lifts a line off its surface; in nearness, 1 / radii
 const Vector3d kFront(0.80, 0.76, 0.70);
 const Vector3d kBack(0.80, 0.35, 0.28);
-const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
-const Vector3d kBackgroundBottom(0.86, 0.875, 0.90);
-const Vector3d kWire(0.10, 0.14, 0.22);
-const Vector3d kLine(0.85, 0.08, 0.10);
 const Vector3d kSqueezed(0.13, 0.35, 0.75);
 const Vector3d kFair(0.96, 0.96, 0.95);
 const Vector3d kSpread(0.90, 0.47, 0.10);
@@ -91,7 +84,7 @@ Vector3d shade(Vector3d normal) {
     normal = length > 0 ? Vector3d(normal / length) : Vector3d::UnitZ();
     const bool front = normal.z() >= 0;
     if (!front) normal = -normal;
-    const Vector3d albedo = (front ? kFront : kBack).array().pow(2.2);
+    const Vector3d albedo = linear(front ? kFront : kBack);
 
     static const Vector3d key = Vector3d(-0.45, 0.65, 0.62).normalized();
     static const Vector3d fill = Vector3d(0.75, 0.05, 0.55).normalized();
@@ -101,151 +94,6 @@ Vector3d shade(Vector3d normal) {
     const Vector3d half = (key + Vector3d::UnitZ()).normalized();
     const double gloss = 0.10 * std::pow(std::max(0.0, normal.dot(half)), 24);
     return albedo * diffuse + Vector3d::Constant(gloss);
-}
-
-uint8_t to_byte(double linear) {
-    return static_cast<uint8_t>(std::lround(255 * std::pow(std::clamp(linear, 0.0, 1.0), 1 / 2.2)));
-}
-
-// Samples of the picture, kSupersampling times finer on each axis.
-struct Canvas {
-    explicit Canvas(uint32_t pixels)
-        : side(pixels * kSupersampling),
-          depth(size_t{side} * side, -std::numeric_limits<float>::infinity()),
-          colour(size_t{side} * side) {
-        for (uint32_t row = 0; row < side; ++row) {
-            const double s = static_cast<double>(row) / side;
-            const Vector3d background = (1 - s) * kBackgroundTop + s * kBackgroundBottom;
-            const Vector3d linear = background.array().pow(2.2);
-            std::fill_n(colour.begin() + static_cast<std::ptrdiff_t>(size_t{row} * side), side, linear.cast<float>());
-        }
-    }
-
-    uint32_t side;
-    std::vector<float> depth;  // larger is nearer
-    std::vector<Eigen::Vector3f> colour;
-};
-
-struct Corner {
-    Vector2d pixel;
-    double nearness = 0;
-};
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// paint(weights) returns the linear light at the point with these weights of the corners.
-template <class Paint>
-void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint& paint, Canvas& canvas) {
-    const Vector2d& a = corners[0].pixel;
-    const Vector2d& b = corners[1].pixel;
-    const Vector2d& c = corners[2].pixel;
-    const double doubled_area = cross(b - a, c - a);
-    if (doubled_area == 0) return;
-    const double last = canvas.side - 1.0;
-    const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMax(0.0);
-    const Vector2d high = a.cwiseMax(b).cwiseMax(c).cwiseMin(last);
-    if (low.x() > high.x() || low.y() > high.y()) return;
-    // A corner's weight times this is the distance from the opposite edge, in samples.
-    const std::array<double, 3> height = {std::abs(doubled_area) / (c - b).norm(),
-                                          std::abs(doubled_area) / (a - c).norm(),
-                                          std::abs(doubled_area) / (b - a).norm()};
-    for (auto y = static_cast<uint32_t>(std::floor(low.y())); y <= static_cast<uint32_t>(high.y()); ++y) {
-        for (auto x = static_cast<uint32_t>(std::floor(low.x())); x <= static_cast<uint32_t>(high.x()); ++x) {
-            const Vector2d p(x, y);
-            const std::array<double, 3> weight = {cross(b - p, c - p) / doubled_area,
-                                                  cross(c - p, a - p) / doubled_area,
-                                                  cross(a - p, b - p) / doubled_area};
-            if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) continue;
-            double nearness = 0;
-            double edge_distance = std::numeric_limits<double>::infinity();
-            for (size_t k = 0; k < 3; ++k) {
-                nearness += weight[k] * corners[k].nearness;
-                edge_distance = std::min(edge_distance, weight[k] * height[k]);
-            }
-            const size_t i = size_t{y} * canvas.side + x;
-            if (static_cast<float>(nearness) <= canvas.depth[i]) continue;
-            canvas.depth[i] = static_cast<float>(nearness);
-            const bool on_edge = wire && edge_distance < 0.4 * kSupersampling;
-            canvas.colour[i] = (on_edge ? Vector3d(kWire.array().pow(2.2)) : Vector3d(paint(weight))).cast<float>();
-        }
-    }
-}
-
-// Per sample. 0: no line, 1: a line behind the surface, 2: a line in front.
-using LineMask = std::vector<uint8_t>;
-
-// Marks a line of a pen's width. Only what is nearer by more than kLineBias hides it.
-void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, LineMask& mask) {
-    constexpr double kPen = 0.9 * kSupersampling;
-    const double length = (to.pixel - from.pixel).norm();
-    if (!std::isfinite(length)) return;
-    const auto steps = static_cast<uint32_t>(std::min(length, 4.0 * canvas.side)) + 1;
-    const auto last = static_cast<double>(canvas.side) - 1;
-    for (uint32_t i = 0; i <= steps; ++i) {
-        const double t = static_cast<double>(i) / steps;
-        const Vector2d p = (1 - t) * from.pixel + t * to.pixel;
-        const auto nearness = static_cast<float>((1 - t) * from.nearness + t * to.nearness + kLineBias);
-        for (double y = std::ceil(std::max(p.y() - kPen, 0.0)); y <= std::min(p.y() + kPen, last); ++y) {
-            for (double x = std::ceil(std::max(p.x() - kPen, 0.0)); x <= std::min(p.x() + kPen, last); ++x) {
-                if ((Vector2d(x, y) - p).squaredNorm() > kPen * kPen) continue;
-                const size_t k = static_cast<size_t>(y) * canvas.side + static_cast<size_t>(x);
-                mask[k] = std::max<uint8_t>(mask[k], nearness >= canvas.depth[k] ? 2 : 1);
-            }
-        }
-    }
-}
-
-// Hidden lines shine through.
-void paint_lines(const LineMask& mask, Canvas& canvas) {
-    const Eigen::Vector3f line = Vector3d(kLine.array().pow(2.2)).cast<float>();
-    for (size_t k = 0; k < mask.size(); ++k) {
-        if (mask[k] == 0) continue;
-        const float part = mask[k] == 2 ? 1.0F : 0.3F;
-        canvas.colour[k] = (1 - part) * canvas.colour[k] + part * line;
-    }
-}
-
-Picture average(const Canvas& canvas) {
-    Picture picture;
-    picture.width = picture.height = canvas.side / kSupersampling;
-    picture.rgb.reserve(size_t{3} * picture.width * picture.height);
-    for (uint32_t row = 0; row < picture.height; ++row) {
-        for (uint32_t column = 0; column < picture.width; ++column) {
-            Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-            for (uint32_t i = 0; i < kSupersampling; ++i) {
-                for (uint32_t j = 0; j < kSupersampling; ++j) {
-                    sum += canvas.colour[size_t{row * kSupersampling + i} * canvas.side + column * kSupersampling + j];
-                }
-            }
-            for (int k = 0; k < 3; ++k) {
-                picture.rgb.push_back(to_byte(static_cast<double>(sum[k]) / (kSupersampling * kSupersampling)));
-            }
-        }
-    }
-    return picture;
-}
-
-void fill_box(Picture& picture, double left, double top, double right, double bottom, uint8_t grey) {
-    const auto x1 = std::min(static_cast<uint32_t>(std::max(right, 0.0)), picture.width);
-    const auto y1 = std::min(static_cast<uint32_t>(std::max(bottom, 0.0)), picture.height);
-    for (auto y = static_cast<uint32_t>(std::max(top, 0.0)); y < y1; ++y) {
-        for (auto x = static_cast<uint32_t>(std::max(left, 0.0)); x < x1; ++x) {
-            std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{y} * picture.width + x)), 3,
-                        grey);
-        }
-    }
-}
-
-void draw_caption(Picture& picture, const std::string& text, uint32_t left, uint32_t width, uint32_t top) {
-    const std::vector<TextBox> boxes = text_boxes(text);
-    double extent = 1;
-    for (const TextBox& box : boxes) extent = std::max(extent, box.right);
-    const double scale = std::clamp(std::floor(0.95 * width / extent), 1.0, 2.0);
-    const double x = left + std::max(0.0, 0.5 * (width - scale * extent));
-    const double y = top + 0.5 * kCaptionHeight - 4 * scale;
-    for (const TextBox& box : boxes) {
-        fill_box(picture, x + scale * box.left, y + scale * box.top, x + scale * box.right, y + scale * box.bottom, 40);
-    }
 }
 
 }  // namespace
@@ -341,7 +189,7 @@ Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 
         const double share = plane_area(t) * space / std::max(space_area(t) * plane, 1e-300);
         const double octaves = std::clamp(std::log2(std::max(share, 1e-30)) / 5, -1.0, 1.0);
         const Vector3d end = octaves < 0 ? kSqueezed : kSpread;
-        Vector3d colour = ((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end).array().pow(2.2);
+        const Vector3d colour = linear((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end);
         const std::array<Corner, 3> corners = {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])};
         draw_triangle(
             corners, mesh.triangles.size() < 10000, [&](const auto&) { return colour; }, canvas);
@@ -392,51 +240,6 @@ Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
         }
     }
     return picture;
-}
-
-Picture place_side_by_side(std::span<const Panel> panels) {
-    Picture all;
-    for (const Panel& panel : panels) {
-        all.width += panel.picture.width;
-        all.height = std::max(all.height, panel.picture.height);
-    }
-    const uint32_t caption_top = all.height;
-    all.height += kCaptionHeight;
-    all.rgb.assign(size_t{3} * all.width * all.height, 255);
-    uint32_t left = 0;
-    for (const Panel& panel : panels) {
-        const size_t row_bytes = size_t{3} * panel.picture.width;
-        for (uint32_t row = 0; row < panel.picture.height; ++row) {
-            std::copy_n(panel.picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
-                        all.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{row} * all.width + left)));
-        }
-        draw_caption(all, panel.caption, left, panel.picture.width, caption_top);
-        left += panel.picture.width;
-    }
-    return all;
-}
-
-Picture place_below(const Picture& top, const Picture& bottom) {
-    Picture all;
-    all.width = std::max(top.width, bottom.width);
-    all.height = top.height + bottom.height;
-    all.rgb.assign(size_t{3} * all.width * all.height, 255);
-    const auto copy = [&](const Picture& picture, uint32_t first_row) {
-        const size_t row_bytes = size_t{3} * picture.width;
-        for (uint32_t row = 0; row < picture.height; ++row) {
-            std::copy_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
-                        all.rgb.begin() + static_cast<std::ptrdiff_t>(size_t{3} * (first_row + row) * all.width));
-        }
-    };
-    copy(top, 0);
-    copy(bottom, top.height);
-    return all;
-}
-
-Result<Bytes> write_png(const Picture& picture) {
-    Bytes bytes = png_bytes(picture.rgb.data(), picture.width, picture.height);
-    if (bytes.empty()) return Error{Stage::kWrite, "the PNG library failed (out of memory?)"};
-    return bytes;
 }
 
 }  // namespace gim

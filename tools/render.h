@@ -2,21 +2,15 @@
 // averaging kSupersampling^2 samples per pixel. Deterministic. Cost O(triangles + pixels).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "gim/encoder.h"
 #include "tools/decoded.h"
-#include "tools/file.h"
+#include "tools/picture.h"
 
 namespace gim {
-
-struct Picture {
-    uint32_t width = 0, height = 0;
-    std::vector<uint8_t> rgb;  // row-major, top row first
-};
 
 enum class UpAxis { kAuto, kX, kY, kZ };  // kAuto: z for flat models that lie in the x-y plane (terrain), else y
 
@@ -39,16 +33,5 @@ Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 
 
 // Draws the geometry images themselves: x y z in the bounding box as red green blue. Several images become tiles.
 Picture render_images(std::span<const DecodedImage> images, uint32_t size);
-
-struct Panel {
-    Picture picture;
-    std::string caption;
-};
-// Places panels of equal height from left to right, captions below.
-Picture place_side_by_side(std::span<const Panel> panels);
-// Places pictures of equal width from top to bottom.
-Picture place_below(const Picture& top, const Picture& bottom);
-
-Result<Bytes> write_png(const Picture& picture);
 
 }  // namespace gim
