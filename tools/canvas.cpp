@@ -6,13 +6,17 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLineBias = 1e-3;  // lifts a line off its surface; in nearness, 1 / radii
+constexpr double kBias = 1e-3;  // lifts a mark off its surface; in nearness, 1 / radii
 const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
 const Vector3d kBackgroundBottom(0.86, 0.875, 0.90);
-const Vector3d kLine(0.85, 0.08, 0.10);
 
 uint8_t to_byte(double light) {
     return static_cast<uint8_t>(std::lround(255 * std::pow(std::clamp(light, 0.0, 1.0), 1 / 2.2)));
+}
+
+void mark(size_t sample, double nearness, const Canvas& canvas, MarkMask& mask) {
+    const bool in_front = static_cast<float>(nearness + kBias) >= canvas.depth[sample];
+    mask[sample] = std::max<uint8_t>(mask[sample], in_front ? 2 : 1);
 }
 
 }  // namespace
@@ -29,8 +33,8 @@ Canvas::Canvas(uint32_t pixels)
     }
 }
 
-void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, LineMask& mask) {
-    constexpr double kPen = 0.9 * kSupersampling;
+void mark_line(const Corner& from, const Corner& to, double pen_radius, const Canvas& canvas, MarkMask& mask) {
+    const double pen = pen_radius * kSupersampling;
     const double length = (to.pixel - from.pixel).norm();
     if (!std::isfinite(length)) return;
     const auto steps = static_cast<uint32_t>(std::min(length, 4.0 * canvas.side)) + 1;
@@ -38,23 +42,29 @@ void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, Line
     for (uint32_t i = 0; i <= steps; ++i) {
         const double t = static_cast<double>(i) / steps;
         const Vector2d p = (1 - t) * from.pixel + t * to.pixel;
-        const auto nearness = static_cast<float>((1 - t) * from.nearness + t * to.nearness + kLineBias);
-        for (double y = std::ceil(std::max(p.y() - kPen, 0.0)); y <= std::min(p.y() + kPen, last); ++y) {
-            for (double x = std::ceil(std::max(p.x() - kPen, 0.0)); x <= std::min(p.x() + kPen, last); ++x) {
-                if ((Vector2d(x, y) - p).squaredNorm() > kPen * kPen) continue;
-                const size_t k = static_cast<size_t>(y) * canvas.side + static_cast<size_t>(x);
-                mask[k] = std::max<uint8_t>(mask[k], nearness >= canvas.depth[k] ? 2 : 1);
+        const double nearness = (1 - t) * from.nearness + t * to.nearness;
+        for (double y = std::ceil(std::max(p.y() - pen, 0.0)); y <= std::min(p.y() + pen, last); ++y) {
+            for (double x = std::ceil(std::max(p.x() - pen, 0.0)); x <= std::min(p.x() + pen, last); ++x) {
+                if ((Vector2d(x, y) - p).squaredNorm() > pen * pen) continue;
+                mark(static_cast<size_t>(y) * canvas.side + static_cast<size_t>(x), nearness, canvas, mask);
             }
         }
     }
 }
 
-void paint_lines(const LineMask& mask, Canvas& canvas) {
-    const Eigen::Vector3f line = linear(kLine).cast<float>();
+void mark_triangle(const std::array<Corner, 3>& corners, double pen_radius, const Canvas& canvas, MarkMask& mask) {
+    for_each_sample(corners, canvas.side, [&](size_t sample, const std::array<double, 3>&, double nearness) {
+        mark(sample, nearness, canvas, mask);
+    });
+    for (size_t k = 0; k < 3; ++k) mark_line(corners[k], corners[(k + 1) % 3], pen_radius, canvas, mask);
+}
+
+void paint_marks(const MarkMask& mask, const Vector3d& colour, float visible_behind, Canvas& canvas) {
+    const Eigen::Vector3f light = linear(colour).cast<float>();
     for (size_t k = 0; k < mask.size(); ++k) {
         if (mask[k] == 0) continue;
-        const float part = mask[k] == 2 ? 1.0F : 0.3F;
-        canvas.colour[k] = (1 - part) * canvas.colour[k] + part * line;
+        const float part = mask[k] == 2 ? 1.0F : visible_behind;
+        canvas.colour[k] = (1 - part) * canvas.colour[k] + part * light;
     }
 }
 

@@ -21,6 +21,17 @@ constexpr double kDistance = 4.5;  // from the eye to the centre, in radii of th
 constexpr double kFilled = 0.92;   // part of the picture's side that the model fills
 const Vector3d kFront(0.80, 0.76, 0.70);
 const Vector3d kBack(0.80, 0.35, 0.28);
+const Vector3d kCut(0.85, 0.08, 0.10);
+constexpr double kCutPen = 0.9;     // radius, pixels
+constexpr float kCutBehind = 0.3F;  // how much of a hidden cut shines through
+
+// With defects painted, only defects are red or yellow.
+const Vector3d kPlain(0.84, 0.85, 0.86);
+const Vector3d kPlainBack(0.50, 0.58, 0.70);
+const Vector3d kOffBy20(0.98, 0.92, 0.58);
+const Vector3d kOffBy45(0.96, 0.56, 0.12);
+const Vector3d kFolded(0.90, 0.03, 0.06);
+const Vector3d kFoldedBack(0.42, 0.0, 0.05);
 const Vector3d kSqueezed(0.13, 0.35, 0.75);
 const Vector3d kFair(0.96, 0.96, 0.95);
 const Vector3d kSpread(0.90, 0.47, 0.10);
@@ -78,13 +89,13 @@ std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const std::vector
     return normals;
 }
 
-// Returns the linear light of a surface point. Its normal is in camera axes.
-Vector3d shade(Vector3d normal) {
+// Returns the linear light of a surface point of this colour. Its normal is in camera axes; if it looks away, the
+// surface is lit from its other side.
+Vector3d shade(Vector3d normal, const Vector3d& colour) {
     const double length = normal.norm();
     normal = length > 0 ? Vector3d(normal / length) : Vector3d::UnitZ();
-    const bool front = normal.z() >= 0;
-    if (!front) normal = -normal;
-    const Vector3d albedo = linear(front ? kFront : kBack);
+    if (normal.z() < 0) normal = -normal;
+    const Vector3d albedo = linear(colour);
 
     static const Vector3d key = Vector3d(-0.45, 0.65, 0.62).normalized();
     static const Vector3d fill = Vector3d(0.75, 0.05, 0.55).normalized();
@@ -96,70 +107,121 @@ Vector3d shade(Vector3d normal) {
     return albedo * diffuse + Vector3d::Constant(gloss);
 }
 
-}  // namespace
+// A mesh as the camera sees it.
+struct Scene {
+    std::vector<Vector3d> seen;     // in camera axes, centred, the model's radius is 1
+    std::vector<Vector2d> pixels;   // in samples of the canvas
+    std::vector<Vector3d> normals;  // empty if shading is flat
 
-Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines) {
-    Canvas canvas(view.size);
-    const Bounds bounds = bounds_of(mesh);
-    const Vector3d extent = bounds.high - bounds.low;
-    const double radius = 0.5 * extent.norm();
-    if (!(radius > 0) || !std::isfinite(radius)) return average(canvas);
+    bool empty() const { return seen.empty(); }
+    Corner corner(uint32_t v) const {
+        return {pixels[v], 1 / (kDistance - seen[v].z())};  // 1 / distance is linear over the picture
+    }
+    std::array<Corner, 3> corners(const std::array<uint32_t, 3>& t) const {
+        return {corner(t[0]), corner(t[1]), corner(t[2])};
+    }
+};
 
-    // Moves the model into camera axes, centred, radius 1.
-    const Matrix3d axes = camera_axes(view, extent);
-    const Vector3d centre = 0.5 * (bounds.low + bounds.high);
-    std::vector<Vector3d> seen(mesh.positions.size());
-    for (uint32_t v = 0; v < seen.size(); ++v) seen[v] = axes * (at(mesh, v) - centre) / radius;
-    const std::vector<Vector3d> normals = view.flat ? std::vector<Vector3d>() : smooth_normals(mesh, seen);
-
-    // Perspective, then the largest scale at which everything is inside.
-    std::vector<Vector2d> pixels(seen.size());
+// Applies perspective, then the largest scale at which everything is inside.
+void project(const TriangleMesh& mesh, uint32_t side, Scene& scene) {
+    scene.pixels.resize(scene.seen.size());
     Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
     Vector2d high = -low;
-    for (size_t v = 0; v < seen.size(); ++v) {
-        pixels[v] = Vector2d(seen[v].x(), -seen[v].y()) / (kDistance - seen[v].z());
+    for (size_t v = 0; v < scene.seen.size(); ++v) {
+        scene.pixels[v] = Vector2d(scene.seen[v].x(), -scene.seen[v].y()) / (kDistance - scene.seen[v].z());
     }
     for (const auto& t : mesh.triangles) {
         if (!is_finite(mesh, t)) continue;
         for (const uint32_t v : t) {
-            low = low.cwiseMin(pixels[v]);
-            high = high.cwiseMax(pixels[v]);
+            low = low.cwiseMin(scene.pixels[v]);
+            high = high.cwiseMax(scene.pixels[v]);
         }
     }
-    const double scale = kFilled * canvas.side / std::max((high - low).maxCoeff(), 1e-12);
+    const double scale = kFilled * side / std::max((high - low).maxCoeff(), 1e-12);
     const Vector2d middle = 0.5 * (low + high);
-    for (Vector2d& p : pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * canvas.side);
+    for (Vector2d& p : scene.pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * side);
+}
 
-    const auto corner_at = [&](uint32_t v) {
-        return Corner{pixels[v], 1 / (kDistance - seen[v].z())};  // 1 / distance is linear over the picture
-    };
-    for (const auto& t : mesh.triangles) {
+// Returns an empty scene if the mesh has no extent.
+Scene look_at(const TriangleMesh& mesh, const View& view, uint32_t side) {
+    Scene scene;
+    const Bounds bounds = bounds_of(mesh);
+    const Vector3d extent = bounds.high - bounds.low;
+    const double radius = 0.5 * extent.norm();
+    if (!(radius > 0) || !std::isfinite(radius)) return scene;
+    const Matrix3d axes = camera_axes(view, extent);
+    const Vector3d centre = 0.5 * (bounds.low + bounds.high);
+    scene.seen.resize(mesh.positions.size());
+    for (uint32_t v = 0; v < scene.seen.size(); ++v) scene.seen[v] = axes * (at(mesh, v) - centre) / radius;
+    if (!view.flat) scene.normals = smooth_normals(mesh, scene.seen);
+    project(mesh, side, scene);
+    return scene;
+}
+
+// Draws the surface. colour_at(triangle, weights, whether its front is seen) returns the colour of a point.
+template <class ColourAt>
+void draw_surface(const TriangleMesh& mesh, const Scene& scene, bool wire, const ColourAt& colour_at, Canvas& canvas) {
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        const auto& t = mesh.triangles[f];
         if (!is_finite(mesh, t)) continue;
-        const Vector3d facet = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
-        std::array<Corner, 3> corners;
+        const Vector3d facet = (scene.seen[t[1]] - scene.seen[t[0]]).cross(scene.seen[t[2]] - scene.seen[t[0]]);
         std::array<Vector3d, 3> normal = {facet, facet, facet};
-        for (size_t k = 0; k < 3; ++k) {
-            corners[k] = corner_at(t[k]);
-            if (view.flat) continue;
-            // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
-            if (normals[t[k]].norm() > 0) normal[k] = normals[t[k]].normalized();
+        for (size_t k = 0; k < 3 && !scene.normals.empty(); ++k) {
+            if (scene.normals[t[k]].norm() > 0) normal[k] = scene.normals[t[k]].normalized();
         }
-        const Vector3d to_eye = Vector3d(0, 0, kDistance) - seen[t[0]];
-        const bool front = facet.dot(to_eye) >= 0;
+        // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
+        const bool front = facet.dot(Vector3d(0, 0, kDistance) - scene.seen[t[0]]) >= 0;
         for (Vector3d& n : normal) {
             if (front && n.z() < 0) n.z() = 0;
             if (!front && n.z() >= 0) n.z() = -1e-9;
         }
         const auto paint = [&](const std::array<double, 3>& weight) {
-            return shade(weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2]);
+            return shade(weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2],
+                         colour_at(f, weight, front));
         };
-        draw_triangle(corners, view.wire, paint, canvas);
+        draw_triangle(scene.corners(t), wire, paint, canvas);
     }
+}
+
+}  // namespace
+
+Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines) {
+    Canvas canvas(view.size);
+    const Scene scene = look_at(mesh, view, canvas.side);
+    if (scene.empty()) return average(canvas);
+    const auto colour_at = [](size_t, const auto&, bool front) { return front ? kFront : kBack; };
+    draw_surface(mesh, scene, view.wire, colour_at, canvas);
     if (!lines.empty()) {
-        LineMask mask(canvas.colour.size(), 0);
-        for (const auto& line : lines) trace_line(corner_at(line[0]), corner_at(line[1]), canvas, mask);
-        paint_lines(mask, canvas);
+        MarkMask mask(canvas.colour.size(), 0);
+        for (const auto& line : lines) mark_line(scene.corner(line[0]), scene.corner(line[1]), kCutPen, canvas, mask);
+        paint_marks(mask, kCut, kCutBehind, canvas);
     }
+    return average(canvas);
+}
+
+Picture render_defects(const TriangleMesh& mesh, const DefectMap& defects, const View& view) {
+    Canvas canvas(view.size);
+    const Scene scene = look_at(mesh, view, canvas.side);
+    if (scene.empty()) return average(canvas);
+    const auto colour_at = [&](size_t f, const std::array<double, 3>& weight, bool front) {
+        const auto& t = mesh.triangles[f];
+        double off = 0;
+        for (size_t k = 0; k < 3; ++k) off += weight[k] * static_cast<double>(defects.off[t[k]]);
+        if (off > 20) return off > 45 ? kOffBy45 : kOffBy20;
+        return front ? kPlain : kPlainBack;
+    };
+    draw_surface(mesh, scene, view.wire, colour_at, canvas);
+
+    // Marks show through what lies just above them, because a fold often lies under the surface that it folds into.
+    const double pen = std::max(1.6, view.size / 600.0), edge_pen = 0.6 * pen;
+    MarkMask folded(canvas.colour.size(), 0), folded_back(canvas.colour.size(), 0);
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        if (defects.folded[f]) mark_triangle(scene.corners(mesh.triangles[f]), pen, canvas, folded);
+    }
+    for (const auto& [a, b] : defects.folded_back)
+        mark_line(scene.corner(a), scene.corner(b), edge_pen, canvas, folded_back);
+    paint_marks(folded, kFolded, 0, canvas);
+    paint_marks(folded_back, kFoldedBack, 0, canvas);
     return average(canvas);
 }
 

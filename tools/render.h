@@ -27,6 +27,11 @@ struct View {
 // Leaves out triangles with a non-finite corner. `lines`: edges of the mesh, in red, paler behind the surface.
 Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines = {});
 
+// Draws the mesh grey, with its defects against a reference: folded triangles red, edges folded back dark red, area whose
+// shading normal is off by more than 45 degrees orange, by more than 20 pale yellow. Backs are bluish. The smallest fold
+// is a dot of a few pixels. A fold that lies closely under other parts of the surface shows too.
+Picture render_defects(const TriangleMesh& mesh, const DefectMap& defects, const View& view);
+
 // Draws a flat map of the mesh so that it fills the picture. uv per vertex, v downwards. Blue: the map squeezes the
 // surface, which gets fewer samples than its share. White: its share. Orange: more.
 Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 2>> uv, uint32_t size);
