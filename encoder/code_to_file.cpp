@@ -38,6 +38,7 @@ Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const Triangl
     clock.begin(Stage::kCompare);
     GIM_TRY(comparison, compare_file(encoded.bytes, surface, compare_options));
     encoded.report.error = comparison;
+    encoded.report.folds = comparison.defects->folded_faces;
     GIM_TRY(levels, measure_levels(encoded.bytes, surface, comparison, options.threads));
     encoded.report.levels = std::move(levels);
     GIM_TRY(info, read_own_info(encoded.bytes));

@@ -272,6 +272,12 @@ void add_compare(CLI::App& app, CompareCommand& c) {
         "compared with the nearest point of the other surface. Shading normals are interpolated between vertex\n"
         "normals. A vertex normal is the area-weighted mean of the triangles around all vertices at its position.\n"
         "Normals in the files do not count.\n"
+        "Folded over: triangles of TEST that look away from the triangle of REFERENCE nearest to their centroid, and "
+        "the\n"
+        "share of TEST's area that does. Edges folded back: two triangles meet there at more than 150 degrees between\n"
+        "their normals. Off by > 20, > 45: the share of TEST's area whose shading normal is off by more degrees. This\n"
+        "angle and its percentiles take the angle-weighted mean for a vertex normal, as most renderers do. gim render\n"
+        "--defects shows where the defects are.\n"
         "Vertices at equal positions are joined only if the format cannot share them (STL, glTF).\n"
         "In JSON, a PSNR of null means that the surfaces are equal.");
     sub->add_option("REFERENCE", c.reference, "Surface to compare with: mesh or .gim file")->required();
@@ -293,11 +299,18 @@ void add_render(CLI::App& app, RenderCommand& c) {
         "Faces seen from behind are reddish.\n\n"
         "  gim render bunny.ply bunny.png\n"
         "  gim render bunny.ply all.png --gim bunny.gim     original, geometry image, reconstruction\n"
+        "  gim render bunny.gim defects.png --defects bunny.ply --size 1024\n"
         "  gim render broken.ply look.png --flat --wire --azimuth 200");
     sub->add_option("IN", c.input, "Mesh or .gim file")->required();
     sub->add_option("OUT", c.output, "PNG to write")->required();
     sub->add_option("--gim", c.gim,
                     "Draw three panels: IN, this file's image (x y z as red green blue) and its surface");
+    sub->add_option(
+           "--defects", c.defects,
+           "Compare the surface with this mesh or .gim file and paint it. Red: triangles folded over. Dark red: "
+           "edges folded back. Orange: the shading normal is off by more than 45 degrees; pale yellow: by more "
+           "than 20. Bluish: seen from behind. With --gim: paints that file's surface")
+        ->type_name("REFERENCE");
     sub->add_option("--level", c.level, "Level of the .gim file to draw")->capture_default_str();
     sub->add_option("--size", c.size, "Pixels per side of a panel")->check(CLI::Range(16, 4096))->capture_default_str();
     sub->add_option("--up", c.up, "Axis that points up")

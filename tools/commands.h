@@ -42,7 +42,8 @@ int run_compare(const CompareCommand& command);
 
 struct RenderCommand {
     std::string input, output;
-    std::string gim;  // .gim file to draw beside the input; empty: only the input
+    std::string gim;      // .gim file to draw beside the input; empty: only the input
+    std::string defects;  // reference; defects of the surface against it are painted; empty: none
     uint32_t level = 0;
     uint32_t size = 512;  // pixels per side of a panel
     std::string up = "auto";
@@ -55,8 +56,10 @@ int run_render(const RenderCommand& command);
 // Prints "gim: FILE: STAGE: message" on stderr; returns 1.
 int report_error(const std::string& file, const Error& error);
 
-std::string with_thousands(uint64_t number);  // 34835 -> "34,835"
-void print_line(const std::string& text);     // on stdout
+std::string with_thousands(uint64_t number);           // 34835 -> "34,835"
+void print_line(const std::string& text);              // on stdout
+std::string describe_folds(const Defects& defects);    // "12 triangles, 0.0123% of the area"
+std::string describe_fold(const Defects::Fold& fold);  // "3 triangles near (x, y, z)"
 
 // Runs the whole command line. Returns the exit status. 0: done, 1: the work failed, 2: wrong usage.
 int run_gim(int argc, const char* const* argv);

@@ -23,14 +23,13 @@ void print_topology(const char* which, const std::string& path, const TopologySu
     }
 }
 
+std::string count_triangles(uint64_t count) {
+    return with_thousands(count) + (count == 1 ? " triangle" : " triangles");
+}
+
 void print_defects(const Defects& d) {
-    std::printf("folded over                %s triangles, %.4f%% of the area\n", with_thousands(d.folded_faces).c_str(),
-                100 * d.folded_area);
-    if (d.largest_fold.faces > 0) {
-        std::printf("largest fold               %s triangles near (%.6g, %.6g, %.6g)\n",
-                    with_thousands(d.largest_fold.faces).c_str(), d.largest_fold.center[0], d.largest_fold.center[1],
-                    d.largest_fold.center[2]);
-    }
+    std::printf("folded over                %s\n", describe_folds(d).c_str());
+    if (d.largest_fold.faces > 0) std::printf("largest fold               %s\n", describe_fold(d.largest_fold).c_str());
     std::printf("edges folded back          %s (%s in the reference)\n", with_thousands(d.folded_back_edges).c_str(),
                 with_thousands(d.folded_back_edges_of_reference).c_str());
     std::printf("normals off by > 20, > 45  %.4f%%, %.4f%% of the area\n", 100 * d.off_by_20, 100 * d.off_by_45);
@@ -39,6 +38,18 @@ void print_defects(const Defects& d) {
 }
 
 }  // namespace
+
+std::string describe_folds(const Defects& defects) {
+    char area[40];
+    std::snprintf(area, sizeof(area), "%.4f%%", 100 * defects.folded_area);
+    return count_triangles(defects.folded_faces) + ", " + area + " of the area";
+}
+
+std::string describe_fold(const Defects::Fold& fold) {
+    char place[100];
+    std::snprintf(place, sizeof(place), "(%.6g, %.6g, %.6g)", fold.center[0], fold.center[1], fold.center[2]);
+    return count_triangles(fold.faces) + " near " + place;
+}
 
 int run_compare(const CompareCommand& command) {
     const Result<TriangleMesh> reference = read_surface(command.reference, 0);

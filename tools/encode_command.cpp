@@ -72,6 +72,9 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
                            scientific(report.error.hausdorff) + ", " + scientific(share) + " % of the diagonal"));
     print_line(format_line("RMS input to decoded", scientific(report.error.rms_to_test)));
     print_line(format_line("RMS decoded to input", scientific(report.error.rms_to_reference)));
+    const Defects& defects = *report.error.defects;
+    print_line(format_line("folded over", describe_folds(defects)));
+    if (defects.largest_fold.faces > 0) print_line(format_line("largest fold", describe_fold(defects.largest_fold)));
     for (const LevelReport& level : report.levels) {
         if (level.level == 0) continue;
         print_line(format_line(("  level " + std::to_string(level.level)).c_str(),

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/stb.h"
+#include "tools/canvas.h"
 
 namespace gim {
 namespace {
@@ -17,17 +17,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr uint32_t kSupersampling = 3;
 constexpr double kDistance = 4.5;  // from the eye to the centre, in radii of the model: a long lens
 constexpr double kFilled = 0.92;   // part of the picture's side that the model fills
-constexpr uint32_t kCaptionHeight = 40;
-constexpr double kLineBias = 1e-3;  // lifts a line off its surface; in nearness, 1 / radii
 const Vector3d kFront(0.80, 0.76, 0.70);
 const Vector3d kBack(0.80, 0.35, 0.28);
-const Vector3d kBackgroundTop(0.97, 0.975, 0.98);
-const Vector3d kBackgroundBottom(0.86, 0.875, 0.90);
-const Vector3d kWire(0.10, 0.14, 0.22);
-const Vector3d kLine(0.85, 0.08, 0.10);
+const Vector3d kCut(0.85, 0.08, 0.10);
+constexpr double kCutPen = 0.9;     // radius, pixels
+constexpr float kCutBehind = 0.3F;  // how much of a hidden cut shines through
+
+// With defects painted, only defects are red or yellow.
+const Vector3d kPlain(0.84, 0.85, 0.86);
+const Vector3d kPlainBack(0.50, 0.58, 0.70);
+const Vector3d kOffBy20(0.98, 0.92, 0.58);
+const Vector3d kOffBy45(0.96, 0.56, 0.12);
+const Vector3d kFolded(0.90, 0.03, 0.06);
+const Vector3d kFoldedBack(0.42, 0.0, 0.05);
 const Vector3d kSqueezed(0.13, 0.35, 0.75);
 const Vector3d kFair(0.96, 0.96, 0.95);
 const Vector3d kSpread(0.90, 0.47, 0.10);
@@ -85,13 +89,13 @@ std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const std::vector
     return normals;
 }
 
-// Returns the linear light of a surface point. Its normal is in camera axes.
-Vector3d shade(Vector3d normal) {
+// Returns the linear light of a surface point of this colour. Its normal is in camera axes; if it looks away, the
+// surface is lit from its other side.
+Vector3d shade(Vector3d normal, const Vector3d& colour) {
     const double length = normal.norm();
     normal = length > 0 ? Vector3d(normal / length) : Vector3d::UnitZ();
-    const bool front = normal.z() >= 0;
-    if (!front) normal = -normal;
-    const Vector3d albedo = (front ? kFront : kBack).array().pow(2.2);
+    if (normal.z() < 0) normal = -normal;
+    const Vector3d albedo = linear(colour);
 
     static const Vector3d key = Vector3d(-0.45, 0.65, 0.62).normalized();
     static const Vector3d fill = Vector3d(0.75, 0.05, 0.55).normalized();
@@ -103,148 +107,79 @@ Vector3d shade(Vector3d normal) {
     return albedo * diffuse + Vector3d::Constant(gloss);
 }
 
-uint8_t to_byte(double linear) {
-    return static_cast<uint8_t>(std::lround(255 * std::pow(std::clamp(linear, 0.0, 1.0), 1 / 2.2)));
-}
+// A mesh as the camera sees it.
+struct Scene {
+    std::vector<Vector3d> seen;     // in camera axes, centred, the model's radius is 1
+    std::vector<Vector2d> pixels;   // in samples of the canvas
+    std::vector<Vector3d> normals;  // empty if shading is flat
 
-// Samples of the picture, kSupersampling times finer on each axis.
-struct Canvas {
-    explicit Canvas(uint32_t pixels)
-        : side(pixels * kSupersampling),
-          depth(size_t{side} * side, -std::numeric_limits<float>::infinity()),
-          colour(size_t{side} * side) {
-        for (uint32_t row = 0; row < side; ++row) {
-            const double s = static_cast<double>(row) / side;
-            const Vector3d background = (1 - s) * kBackgroundTop + s * kBackgroundBottom;
-            const Vector3d linear = background.array().pow(2.2);
-            std::fill_n(colour.begin() + static_cast<std::ptrdiff_t>(size_t{row} * side), side, linear.cast<float>());
-        }
+    bool empty() const { return seen.empty(); }
+    Corner corner(uint32_t v) const {
+        return {pixels[v], 1 / (kDistance - seen[v].z())};  // 1 / distance is linear over the picture
     }
-
-    uint32_t side;
-    std::vector<float> depth;  // larger is nearer
-    std::vector<Eigen::Vector3f> colour;
+    std::array<Corner, 3> corners(const std::array<uint32_t, 3>& t) const {
+        return {corner(t[0]), corner(t[1]), corner(t[2])};
+    }
 };
 
-struct Corner {
-    Vector2d pixel;
-    double nearness = 0;
-};
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// paint(weights) returns the linear light at the point with these weights of the corners.
-template <class Paint>
-void draw_triangle(const std::array<Corner, 3>& corners, bool wire, const Paint& paint, Canvas& canvas) {
-    const Vector2d& a = corners[0].pixel;
-    const Vector2d& b = corners[1].pixel;
-    const Vector2d& c = corners[2].pixel;
-    const double doubled_area = cross(b - a, c - a);
-    if (doubled_area == 0) return;
-    const double last = canvas.side - 1.0;
-    const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMax(0.0);
-    const Vector2d high = a.cwiseMax(b).cwiseMax(c).cwiseMin(last);
-    if (low.x() > high.x() || low.y() > high.y()) return;
-    // A corner's weight times this is the distance from the opposite edge, in samples.
-    const std::array<double, 3> height = {std::abs(doubled_area) / (c - b).norm(),
-                                          std::abs(doubled_area) / (a - c).norm(),
-                                          std::abs(doubled_area) / (b - a).norm()};
-    for (auto y = static_cast<uint32_t>(std::floor(low.y())); y <= static_cast<uint32_t>(high.y()); ++y) {
-        for (auto x = static_cast<uint32_t>(std::floor(low.x())); x <= static_cast<uint32_t>(high.x()); ++x) {
-            const Vector2d p(x, y);
-            const std::array<double, 3> weight = {cross(b - p, c - p) / doubled_area,
-                                                  cross(c - p, a - p) / doubled_area,
-                                                  cross(a - p, b - p) / doubled_area};
-            if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) continue;
-            double nearness = 0;
-            double edge_distance = std::numeric_limits<double>::infinity();
-            for (size_t k = 0; k < 3; ++k) {
-                nearness += weight[k] * corners[k].nearness;
-                edge_distance = std::min(edge_distance, weight[k] * height[k]);
-            }
-            const size_t i = size_t{y} * canvas.side + x;
-            if (static_cast<float>(nearness) <= canvas.depth[i]) continue;
-            canvas.depth[i] = static_cast<float>(nearness);
-            const bool on_edge = wire && edge_distance < 0.4 * kSupersampling;
-            canvas.colour[i] = (on_edge ? Vector3d(kWire.array().pow(2.2)) : Vector3d(paint(weight))).cast<float>();
+// Applies perspective, then the largest scale at which everything is inside.
+void project(const TriangleMesh& mesh, uint32_t side, Scene& scene) {
+    scene.pixels.resize(scene.seen.size());
+    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
+    Vector2d high = -low;
+    for (size_t v = 0; v < scene.seen.size(); ++v) {
+        scene.pixels[v] = Vector2d(scene.seen[v].x(), -scene.seen[v].y()) / (kDistance - scene.seen[v].z());
+    }
+    for (const auto& t : mesh.triangles) {
+        if (!is_finite(mesh, t)) continue;
+        for (const uint32_t v : t) {
+            low = low.cwiseMin(scene.pixels[v]);
+            high = high.cwiseMax(scene.pixels[v]);
         }
     }
+    const double scale = kFilled * side / std::max((high - low).maxCoeff(), 1e-12);
+    const Vector2d middle = 0.5 * (low + high);
+    for (Vector2d& p : scene.pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * side);
 }
 
-// Per sample. 0: no line, 1: a line behind the surface, 2: a line in front.
-using LineMask = std::vector<uint8_t>;
+// Returns an empty scene if the mesh has no extent.
+Scene look_at(const TriangleMesh& mesh, const View& view, uint32_t side) {
+    Scene scene;
+    const Bounds bounds = bounds_of(mesh);
+    const Vector3d extent = bounds.high - bounds.low;
+    const double radius = 0.5 * extent.norm();
+    if (!(radius > 0) || !std::isfinite(radius)) return scene;
+    const Matrix3d axes = camera_axes(view, extent);
+    const Vector3d centre = 0.5 * (bounds.low + bounds.high);
+    scene.seen.resize(mesh.positions.size());
+    for (uint32_t v = 0; v < scene.seen.size(); ++v) scene.seen[v] = axes * (at(mesh, v) - centre) / radius;
+    if (!view.flat) scene.normals = smooth_normals(mesh, scene.seen);
+    project(mesh, side, scene);
+    return scene;
+}
 
-// Marks a line of a pen's width. Only what is nearer by more than kLineBias hides it.
-void trace_line(const Corner& from, const Corner& to, const Canvas& canvas, LineMask& mask) {
-    constexpr double kPen = 0.9 * kSupersampling;
-    const double length = (to.pixel - from.pixel).norm();
-    if (!std::isfinite(length)) return;
-    const auto steps = static_cast<uint32_t>(std::min(length, 4.0 * canvas.side)) + 1;
-    const auto last = static_cast<double>(canvas.side) - 1;
-    for (uint32_t i = 0; i <= steps; ++i) {
-        const double t = static_cast<double>(i) / steps;
-        const Vector2d p = (1 - t) * from.pixel + t * to.pixel;
-        const auto nearness = static_cast<float>((1 - t) * from.nearness + t * to.nearness + kLineBias);
-        for (double y = std::ceil(std::max(p.y() - kPen, 0.0)); y <= std::min(p.y() + kPen, last); ++y) {
-            for (double x = std::ceil(std::max(p.x() - kPen, 0.0)); x <= std::min(p.x() + kPen, last); ++x) {
-                if ((Vector2d(x, y) - p).squaredNorm() > kPen * kPen) continue;
-                const size_t k = static_cast<size_t>(y) * canvas.side + static_cast<size_t>(x);
-                mask[k] = std::max<uint8_t>(mask[k], nearness >= canvas.depth[k] ? 2 : 1);
-            }
+// Draws the surface. colour_at(triangle, weights, whether its front is seen) returns the colour of a point.
+template <class ColourAt>
+void draw_surface(const TriangleMesh& mesh, const Scene& scene, bool wire, const ColourAt& colour_at, Canvas& canvas) {
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        const auto& t = mesh.triangles[f];
+        if (!is_finite(mesh, t)) continue;
+        const Vector3d facet = (scene.seen[t[1]] - scene.seen[t[0]]).cross(scene.seen[t[2]] - scene.seen[t[0]]);
+        std::array<Vector3d, 3> normal = {facet, facet, facet};
+        for (size_t k = 0; k < 3 && !scene.normals.empty(); ++k) {
+            if (scene.normals[t[k]].norm() > 0) normal[k] = scene.normals[t[k]].normalized();
         }
-    }
-}
-
-// Hidden lines shine through.
-void paint_lines(const LineMask& mask, Canvas& canvas) {
-    const Eigen::Vector3f line = Vector3d(kLine.array().pow(2.2)).cast<float>();
-    for (size_t k = 0; k < mask.size(); ++k) {
-        if (mask[k] == 0) continue;
-        const float part = mask[k] == 2 ? 1.0F : 0.3F;
-        canvas.colour[k] = (1 - part) * canvas.colour[k] + part * line;
-    }
-}
-
-Picture average(const Canvas& canvas) {
-    Picture picture;
-    picture.width = picture.height = canvas.side / kSupersampling;
-    picture.rgb.reserve(size_t{3} * picture.width * picture.height);
-    for (uint32_t row = 0; row < picture.height; ++row) {
-        for (uint32_t column = 0; column < picture.width; ++column) {
-            Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-            for (uint32_t i = 0; i < kSupersampling; ++i) {
-                for (uint32_t j = 0; j < kSupersampling; ++j) {
-                    sum += canvas.colour[size_t{row * kSupersampling + i} * canvas.side + column * kSupersampling + j];
-                }
-            }
-            for (int k = 0; k < 3; ++k) {
-                picture.rgb.push_back(to_byte(static_cast<double>(sum[k]) / (kSupersampling * kSupersampling)));
-            }
+        // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
+        const bool front = facet.dot(Vector3d(0, 0, kDistance) - scene.seen[t[0]]) >= 0;
+        for (Vector3d& n : normal) {
+            if (front && n.z() < 0) n.z() = 0;
+            if (!front && n.z() >= 0) n.z() = -1e-9;
         }
-    }
-    return picture;
-}
-
-void fill_box(Picture& picture, double left, double top, double right, double bottom, uint8_t grey) {
-    const auto x1 = std::min(static_cast<uint32_t>(std::max(right, 0.0)), picture.width);
-    const auto y1 = std::min(static_cast<uint32_t>(std::max(bottom, 0.0)), picture.height);
-    for (auto y = static_cast<uint32_t>(std::max(top, 0.0)); y < y1; ++y) {
-        for (auto x = static_cast<uint32_t>(std::max(left, 0.0)); x < x1; ++x) {
-            std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{y} * picture.width + x)), 3,
-                        grey);
-        }
-    }
-}
-
-void draw_caption(Picture& picture, const std::string& text, uint32_t left, uint32_t width, uint32_t top) {
-    const std::vector<TextBox> boxes = text_boxes(text);
-    double extent = 1;
-    for (const TextBox& box : boxes) extent = std::max(extent, box.right);
-    const double scale = std::clamp(std::floor(0.95 * width / extent), 1.0, 2.0);
-    const double x = left + std::max(0.0, 0.5 * (width - scale * extent));
-    const double y = top + 0.5 * kCaptionHeight - 4 * scale;
-    for (const TextBox& box : boxes) {
-        fill_box(picture, x + scale * box.left, y + scale * box.top, x + scale * box.right, y + scale * box.bottom, 40);
+        const auto paint = [&](const std::array<double, 3>& weight) {
+            return shade(weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2],
+                         colour_at(f, weight, front));
+        };
+        draw_triangle(scene.corners(t), wire, paint, canvas);
     }
 }
 
@@ -252,66 +187,41 @@ void draw_caption(Picture& picture, const std::string& text, uint32_t left, uint
 
 Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines) {
     Canvas canvas(view.size);
-    const Bounds bounds = bounds_of(mesh);
-    const Vector3d extent = bounds.high - bounds.low;
-    const double radius = 0.5 * extent.norm();
-    if (!(radius > 0) || !std::isfinite(radius)) return average(canvas);
-
-    // Moves the model into camera axes, centred, radius 1.
-    const Matrix3d axes = camera_axes(view, extent);
-    const Vector3d centre = 0.5 * (bounds.low + bounds.high);
-    std::vector<Vector3d> seen(mesh.positions.size());
-    for (uint32_t v = 0; v < seen.size(); ++v) seen[v] = axes * (at(mesh, v) - centre) / radius;
-    const std::vector<Vector3d> normals = view.flat ? std::vector<Vector3d>() : smooth_normals(mesh, seen);
-
-    // Perspective, then the largest scale at which everything is inside.
-    std::vector<Vector2d> pixels(seen.size());
-    Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
-    Vector2d high = -low;
-    for (size_t v = 0; v < seen.size(); ++v) {
-        pixels[v] = Vector2d(seen[v].x(), -seen[v].y()) / (kDistance - seen[v].z());
-    }
-    for (const auto& t : mesh.triangles) {
-        if (!is_finite(mesh, t)) continue;
-        for (const uint32_t v : t) {
-            low = low.cwiseMin(pixels[v]);
-            high = high.cwiseMax(pixels[v]);
-        }
-    }
-    const double scale = kFilled * canvas.side / std::max((high - low).maxCoeff(), 1e-12);
-    const Vector2d middle = 0.5 * (low + high);
-    for (Vector2d& p : pixels) p = scale * (p - middle) + Vector2d::Constant(0.5 * canvas.side);
-
-    const auto corner_at = [&](uint32_t v) {
-        return Corner{pixels[v], 1 / (kDistance - seen[v].z())};  // 1 / distance is linear over the picture
-    };
-    for (const auto& t : mesh.triangles) {
-        if (!is_finite(mesh, t)) continue;
-        const Vector3d facet = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
-        std::array<Corner, 3> corners;
-        std::array<Vector3d, 3> normal = {facet, facet, facet};
-        for (size_t k = 0; k < 3; ++k) {
-            corners[k] = corner_at(t[k]);
-            if (view.flat) continue;
-            // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
-            if (normals[t[k]].norm() > 0) normal[k] = normals[t[k]].normalized();
-        }
-        const Vector3d to_eye = Vector3d(0, 0, kDistance) - seen[t[0]];
-        const bool front = facet.dot(to_eye) >= 0;
-        for (Vector3d& n : normal) {
-            if (front && n.z() < 0) n.z() = 0;
-            if (!front && n.z() >= 0) n.z() = -1e-9;
-        }
-        const auto paint = [&](const std::array<double, 3>& weight) {
-            return shade(weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2]);
-        };
-        draw_triangle(corners, view.wire, paint, canvas);
-    }
+    const Scene scene = look_at(mesh, view, canvas.side);
+    if (scene.empty()) return average(canvas);
+    const auto colour_at = [](size_t, const auto&, bool front) { return front ? kFront : kBack; };
+    draw_surface(mesh, scene, view.wire, colour_at, canvas);
     if (!lines.empty()) {
-        LineMask mask(canvas.colour.size(), 0);
-        for (const auto& line : lines) trace_line(corner_at(line[0]), corner_at(line[1]), canvas, mask);
-        paint_lines(mask, canvas);
+        MarkMask mask(canvas.colour.size(), 0);
+        for (const auto& line : lines) mark_line(scene.corner(line[0]), scene.corner(line[1]), kCutPen, canvas, mask);
+        paint_marks(mask, kCut, kCutBehind, canvas);
     }
+    return average(canvas);
+}
+
+Picture render_defects(const TriangleMesh& mesh, const DefectMap& defects, const View& view) {
+    Canvas canvas(view.size);
+    const Scene scene = look_at(mesh, view, canvas.side);
+    if (scene.empty()) return average(canvas);
+    const auto colour_at = [&](size_t f, const std::array<double, 3>& weight, bool front) {
+        const auto& t = mesh.triangles[f];
+        double off = 0;
+        for (size_t k = 0; k < 3; ++k) off += weight[k] * static_cast<double>(defects.off[t[k]]);
+        if (off > 20) return off > 45 ? kOffBy45 : kOffBy20;
+        return front ? kPlain : kPlainBack;
+    };
+    draw_surface(mesh, scene, view.wire, colour_at, canvas);
+
+    // Marks show through what lies just above them, because a fold often lies under the surface that it folds into.
+    const double pen = std::max(1.6, view.size / 600.0), edge_pen = 0.6 * pen;
+    MarkMask folded(canvas.colour.size(), 0), folded_back(canvas.colour.size(), 0);
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        if (defects.folded[f]) mark_triangle(scene.corners(mesh.triangles[f]), pen, canvas, folded);
+    }
+    for (const auto& [a, b] : defects.folded_back)
+        mark_line(scene.corner(a), scene.corner(b), edge_pen, canvas, folded_back);
+    paint_marks(folded, kFolded, 0, canvas);
+    paint_marks(folded_back, kFoldedBack, 0, canvas);
     return average(canvas);
 }
 
@@ -341,7 +251,7 @@ Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 
         const double share = plane_area(t) * space / std::max(space_area(t) * plane, 1e-300);
         const double octaves = std::clamp(std::log2(std::max(share, 1e-30)) / 5, -1.0, 1.0);
         const Vector3d end = octaves < 0 ? kSqueezed : kSpread;
-        Vector3d colour = ((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end).array().pow(2.2);
+        const Vector3d colour = linear((1 - std::abs(octaves)) * kFair + std::abs(octaves) * end);
         const std::array<Corner, 3> corners = {corner_at(t[0]), corner_at(t[1]), corner_at(t[2])};
         draw_triangle(
             corners, mesh.triangles.size() < 10000, [&](const auto&) { return colour; }, canvas);
@@ -392,51 +302,6 @@ Picture render_images(std::span<const DecodedImage> images, uint32_t size) {
         }
     }
     return picture;
-}
-
-Picture place_side_by_side(std::span<const Panel> panels) {
-    Picture all;
-    for (const Panel& panel : panels) {
-        all.width += panel.picture.width;
-        all.height = std::max(all.height, panel.picture.height);
-    }
-    const uint32_t caption_top = all.height;
-    all.height += kCaptionHeight;
-    all.rgb.assign(size_t{3} * all.width * all.height, 255);
-    uint32_t left = 0;
-    for (const Panel& panel : panels) {
-        const size_t row_bytes = size_t{3} * panel.picture.width;
-        for (uint32_t row = 0; row < panel.picture.height; ++row) {
-            std::copy_n(panel.picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
-                        all.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (size_t{row} * all.width + left)));
-        }
-        draw_caption(all, panel.caption, left, panel.picture.width, caption_top);
-        left += panel.picture.width;
-    }
-    return all;
-}
-
-Picture place_below(const Picture& top, const Picture& bottom) {
-    Picture all;
-    all.width = std::max(top.width, bottom.width);
-    all.height = top.height + bottom.height;
-    all.rgb.assign(size_t{3} * all.width * all.height, 255);
-    const auto copy = [&](const Picture& picture, uint32_t first_row) {
-        const size_t row_bytes = size_t{3} * picture.width;
-        for (uint32_t row = 0; row < picture.height; ++row) {
-            std::copy_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(row * row_bytes), row_bytes,
-                        all.rgb.begin() + static_cast<std::ptrdiff_t>(size_t{3} * (first_row + row) * all.width));
-        }
-    };
-    copy(top, 0);
-    copy(bottom, top.height);
-    return all;
-}
-
-Result<Bytes> write_png(const Picture& picture) {
-    Bytes bytes = png_bytes(picture.rgb.data(), picture.width, picture.height);
-    if (bytes.empty()) return Error{Stage::kWrite, "the PNG library failed (out of memory?)"};
-    return bytes;
 }
 
 }  // namespace gim

@@ -2,21 +2,15 @@
 // averaging kSupersampling^2 samples per pixel. Deterministic. Cost O(triangles + pixels).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "gim/encoder.h"
 #include "tools/decoded.h"
-#include "tools/file.h"
+#include "tools/picture.h"
 
 namespace gim {
-
-struct Picture {
-    uint32_t width = 0, height = 0;
-    std::vector<uint8_t> rgb;  // row-major, top row first
-};
 
 enum class UpAxis { kAuto, kX, kY, kZ };  // kAuto: z for flat models that lie in the x-y plane (terrain), else y
 
@@ -33,22 +27,16 @@ struct View {
 // Leaves out triangles with a non-finite corner. `lines`: edges of the mesh, in red, paler behind the surface.
 Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines = {});
 
+// Draws the mesh grey, with its defects against a reference: folded triangles red, edges folded back dark red, area whose
+// shading normal is off by more than 45 degrees orange, by more than 20 pale yellow. Backs are bluish. The smallest fold
+// is a dot of a few pixels. A fold that lies closely under other parts of the surface shows too.
+Picture render_defects(const TriangleMesh& mesh, const DefectMap& defects, const View& view);
+
 // Draws a flat map of the mesh so that it fills the picture. uv per vertex, v downwards. Blue: the map squeezes the
 // surface, which gets fewer samples than its share. White: its share. Orange: more.
 Picture render_map(const TriangleMesh& mesh, std::span<const std::array<double, 2>> uv, uint32_t size);
 
 // Draws the geometry images themselves: x y z in the bounding box as red green blue. Several images become tiles.
 Picture render_images(std::span<const DecodedImage> images, uint32_t size);
-
-struct Panel {
-    Picture picture;
-    std::string caption;
-};
-// Places panels of equal height from left to right, captions below.
-Picture place_side_by_side(std::span<const Panel> panels);
-// Places pictures of equal width from top to bottom.
-Picture place_below(const Picture& top, const Picture& bottom);
-
-Result<Bytes> write_png(const Picture& picture);
 
 }  // namespace gim

@@ -1,4 +1,8 @@
-// gim render: draws a mesh as a PNG, alone or beside its geometry image and reconstruction.
+// gim render: draws a mesh as a PNG, alone or beside its geometry image and reconstruction, on request with its defects.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
@@ -14,7 +18,21 @@ UpAxis up_axis_named(const std::string& name) {
     return name == "z" ? UpAxis::kZ : UpAxis::kAuto;
 }
 
-Result<Picture> triptych(const TriangleMesh& original, const RenderCommand& command, const View& view) {
+// Returns the surface with a caption; with its defects if they are asked for.
+Result<Panel> draw_surface(const TriangleMesh& surface, const std::string& caption, const TriangleMesh* reference,
+                           const View& view) {
+    if (reference == nullptr) return Panel{render_mesh(surface, view), caption};
+    const Result<DefectMap> map = map_defects(*reference, surface);
+    if (!map.ok()) return map.error();
+    const DefectMap& defects = map.value();
+    const auto folded = static_cast<uint64_t>(std::count(defects.folded.begin(), defects.folded.end(), 1));
+    return Panel{render_defects(surface, defects, view), caption + ", " + with_thousands(folded) + " folded over, " +
+                                                             with_thousands(defects.folded_back.size()) +
+                                                             " edges folded back"};
+}
+
+Result<Picture> triptych(const TriangleMesh& original, const TriangleMesh* reference, const RenderCommand& command,
+                         const View& view) {
     const Result<Bytes> file = read_file(command.gim);
     if (!file.ok()) return file.error();
     const Result<std::vector<DecodedImage>> decoded = decode_images(file.value(), command.level);
@@ -25,11 +43,23 @@ Result<Picture> triptych(const TriangleMesh& original, const RenderCommand& comm
     const std::string image_caption =
         (images.size() == 1 ? size + " image, " : std::to_string(images.size()) + " images, ") +
         with_thousands(file.value().size()) + " bytes";
+    const Result<Panel> last =
+        draw_surface(surface, "decoded, " + with_thousands(surface.positions.size()) + " vertices", reference, view);
+    if (!last.ok()) return last.error();
     const std::vector<Panel> panels = {
         {render_mesh(original, view), "original, " + with_thousands(original.positions.size()) + " vertices"},
         {render_images(images, view.size), image_caption},
-        {render_mesh(surface, view), "decoded, " + with_thousands(surface.positions.size()) + " vertices"}};
+        last.value()};
     return place_side_by_side(panels);
+}
+
+// A picture of the surface alone has a caption only if it says what the colours mean.
+Result<Picture> single(const TriangleMesh& surface, const TriangleMesh* reference, const View& view) {
+    if (reference == nullptr) return render_mesh(surface, view);
+    const Result<Panel> panel =
+        draw_surface(surface, with_thousands(surface.triangles.size()) + " triangles", reference, view);
+    if (!panel.ok()) return panel.error();
+    return place_side_by_side({&panel.value(), 1});
 }
 
 }  // namespace
@@ -40,16 +70,22 @@ int run_render(const RenderCommand& command) {
     if (!writable.ok()) return report_error(command.output, writable.error());
     const Result<TriangleMesh> mesh = read_surface(command.input, command.gim.empty() ? command.level : 0);
     if (!mesh.ok()) return report_error(command.input, mesh.error());
-
+    std::optional<TriangleMesh> reference;
+    if (!command.defects.empty()) {
+        Result<TriangleMesh> read = read_surface(command.defects, 0);
+        if (!read.ok()) return report_error(command.defects, read.error());
+        reference = std::move(read.value());
+    }
     const View view = {.up = up_axis_named(command.up),
                        .azimuth = command.azimuth,
                        .elevation = command.elevation,
                        .size = command.size,
                        .flat = command.flat,
                        .wire = command.wire};
+    const TriangleMesh* const against = reference ? &*reference : nullptr;
     const Result<Picture> picture =
-        command.gim.empty() ? Result<Picture>(render_mesh(mesh.value(), view)) : triptych(mesh.value(), command, view);
-    if (!picture.ok()) return report_error(command.gim, picture.error());
+        command.gim.empty() ? single(mesh.value(), against, view) : triptych(mesh.value(), against, command, view);
+    if (!picture.ok()) return report_error(command.gim.empty() ? command.input : command.gim, picture.error());
     const Result<Bytes> png = write_png(picture.value());
     if (!png.ok()) return report_error(command.output, png.error());
     const Result<void> written = write_file(command.output, png.value());

@@ -75,7 +75,8 @@ ordered_json to_json(const EncodeReport& report) {
                           {"vertices", level.vertices},
                           {"triangles", level.triangles},
                           {"prefix_bytes", level.prefix_bytes},
-                          {"psnr", level.psnr}});
+                          {"psnr", level.psnr},
+                          {"defects", to_json(level.defects)}});
     }
     return {{"input_vertices", report.input_vertices},
             {"input_triangles", report.input_triangles},

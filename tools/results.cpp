@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "corpus/corpus.h"
@@ -21,9 +22,11 @@
 namespace gim {
 namespace {
 
-constexpr const char* kHeader =
+constexpr std::string_view kHeader =
     "model,setting,coder,width,height,charts,packing,vertices,bytes,psnr_db,rms_to_test,rms_to_reference,hausdorff,"
-    "stretch_efficiency,folds_sampled,folds,levels,decode_ms,encode_cpu_s";
+    "stretch_efficiency,folds_sampled,folded_faces,folded_area,off_by_20,off_by_45,normals_p95,normals_p99,"
+    "p999_over_rms,max_over_rms,folded_back_edges,folded_back_edges_of_reference,level1_folded_faces,"
+    "level1_folded_area,levels,decode_ms,encode_cpu_s";
 constexpr const char* kPackagedBunny = "/usr/share/glmark2/models/bunny.obj";
 constexpr uint32_t kDefaultSide = 257;
 
@@ -94,6 +97,34 @@ double decode_milliseconds(const Bytes& file) {
     return sum;
 }
 
+// Like printf, into a string.
+template <class... Value>
+std::string cells(const char* format, Value... values) {
+    char text[400];
+    std::snprintf(text, sizeof(text), format, values...);
+    return text;
+}
+
+unsigned long long wide(uint64_t count) { return count; }
+
+// Cells of the decoded surface's defects; those of level 1 are empty if the file has no such level.
+std::string defect_cells(const EncodeReport& report) {
+    const Defects& d = *report.error.defects;
+    std::string text = cells("%llu,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%llu,%llu", wide(d.folded_faces), d.folded_area,
+                             d.off_by_20, d.off_by_45, d.normals_p95, d.normals_p99, d.p999_over_rms, d.max_over_rms,
+                             wide(d.folded_back_edges), wide(d.folded_back_edges_of_reference));
+    if (report.levels.size() < 2) return text + ",,";
+    const Defects& coarser = report.levels[1].defects;
+    return text + cells(",%llu,%.4g", wide(coarser.folded_faces), coarser.folded_area);
+}
+
+std::string failed_row(const std::string& model, const Setting& setting, const TriangleMesh& mesh, Stage stage) {
+    const std::string row = cells("%s,%s,%u,,,,,%zu,failed: %s", model.c_str(), setting.name, kCoderVersion,
+                                  mesh.positions.size(), std::string(stage_name(stage)).c_str());
+    const auto commas = [](std::string_view text) { return std::count(text.begin(), text.end(), ','); };
+    return row + std::string(static_cast<size_t>(commas(kHeader) - commas(row)), ',');
+}
+
 std::string measured_row(const std::string& model, const Setting& setting, const TriangleMesh& mesh, uint32_t side) {
     EncodeOptions options;
     options.side = side;
@@ -106,22 +137,14 @@ std::string measured_row(const std::string& model, const Setting& setting, const
     const std::clock_t begin = std::clock();  // processor time of all threads
     const Result<Encoded> encoded = encode(mesh, options);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    char line[400];
-    if (!encoded.ok()) {
-        const std::string stage(stage_name(encoded.error().stage));
-        std::snprintf(line, sizeof(line), "%s,%s,%u,,,,,%zu,failed: %s,,,,,,,,,,", model.c_str(), setting.name,
-                      kCoderVersion, mesh.positions.size(), stage.c_str());
-        return line;
-    }
+    if (!encoded.ok()) return failed_row(model, setting, mesh, encoded.error().stage);
     const EncodeReport& r = encoded.value().report;
-    std::snprintf(line, sizeof(line),
-                  "%s,%s,%u,%u,%u,%u,%.3f,%llu,%llu,%.2f,%.4g,%.4g,%.4g,%.4f,%llu,%llu,%zu,%.2f,%.1f", model.c_str(),
-                  setting.name, kCoderVersion, r.width, r.height, r.charts, r.charts > 0 ? r.packing_efficiency : 1.0,
-                  static_cast<unsigned long long>(r.input_vertices), static_cast<unsigned long long>(r.file_bytes),
-                  r.error.psnr, r.error.rms_to_test, r.error.rms_to_reference, r.error.hausdorff, r.stretch_efficiency,
-                  static_cast<unsigned long long>(r.folds_before_fit), static_cast<unsigned long long>(r.folds),
-                  r.levels.size(), decode_milliseconds(encoded.value().bytes), seconds);
-    return line;
+    return cells("%s,%s,%u,%u,%u,%u,%.3f,%llu,%llu,", model.c_str(), setting.name, kCoderVersion, r.width, r.height,
+                 r.charts, r.charts > 0 ? r.packing_efficiency : 1.0, wide(r.input_vertices), wide(r.file_bytes)) +
+           cells("%.2f,%.4g,%.4g,%.4g,%.4f,%llu,", r.error.psnr, r.error.rms_to_test, r.error.rms_to_reference,
+                 r.error.hausdorff, r.stretch_efficiency, wide(r.folds_before_fit)) +
+           defect_cells(r) +
+           cells(",%zu,%.2f,%.1f", r.levels.size(), decode_milliseconds(encoded.value().bytes), seconds);
 }
 
 bool is_among(std::span<const char* const> names, const std::string& name) {

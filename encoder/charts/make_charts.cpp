@@ -50,7 +50,6 @@ Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& options, 
     chart_options.threads = options.threads;
     GIM_TRY(multi_chart, make_multi_chart_image(mesh, chart_options, clock));
     report.stretch_efficiency = multi_chart.stretch_efficiency;
-    report.folds = multi_chart.after_fit.folds;
     report.folds_before_fit = multi_chart.before_fit.folds;
     if (observer) {
         char caption[64];

@@ -55,15 +55,19 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
     CompareOptions options;
     options.samples = kSamples;
     options.threads = threads;
+    options.defects = true;
     std::vector<LevelReport> levels;
     for (uint32_t level = 0; level < decoder.info().level_count; ++level) {
         GIM_TRY(report, describe_level(decoder, level));
         if (report.width == 0) break;
-        report.psnr = full.psnr;
-        if (level > 0) {
+        if (level == 0) {
+            report.psnr = full.psnr;
+            report.defects = *full.defects;
+        } else {
             GIM_TRY(surface, decode_surface(bytes, level));
             GIM_TRY(comparison, reference.compare(surface, options));
             report.psnr = comparison.psnr;
+            report.defects = *comparison.defects;
         }
         levels.push_back(report);
     }

@@ -10,7 +10,8 @@
 
 namespace gim {
 
-// In:  our own file, the input's surface, and the comparison at full resolution, which is not measured again.
+// In:  our own file, the input's surface, and the comparison at full resolution, with its defects. That is not measured
+//      again.
 // Out: one entry per level at which the seams of at least one image close, finest first.
 // Cost: one decoding and one comparison a level; coarser levels take fewer samples.
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,

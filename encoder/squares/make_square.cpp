@@ -115,7 +115,6 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     fit_options.threads = options.threads;
     GIM_TRY(fitted, fit(square.image, mesh, fit_options, clock.progress()));
     square.image.positions = std::move(fitted.positions);
-    square.folds = fitted.after.folds;
     square.folds_before_fit = fitted.before.folds;
     if (observer) observer(make_snapshot("image-fitted", "fitted", square.image));
     return square;

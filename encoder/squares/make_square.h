@@ -27,8 +27,7 @@ struct MadeSquare {
     double cut_length = 0;           // object units
     double stretch_efficiency = 0;   // of the parametrization that was sampled
     uint64_t flipped_triangles = 0;  // in that parametrization; 0 by construction, counted as a check
-    uint64_t folds = 0;              // image faces that look away from the surface
-    uint64_t folds_before_fit = 0;
+    uint64_t folds_before_fit = 0;   // faces of the sampled image that look away from the surface; 0 without fit
 };
 
 // A clean connected mesh, prepared for cutting. Several cuts may be tried on it.

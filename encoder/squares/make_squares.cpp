@@ -54,7 +54,6 @@ void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& 
     report.cut_length += square.cut_length;
     report.stretch_efficiency += part_of_area * square.stretch_efficiency;
     report.flipped_triangles += square.flipped_triangles;
-    report.folds += square.folds;
     report.folds_before_fit += square.folds_before_fit;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <string>
 
@@ -100,13 +99,12 @@ Squares squared_distances(const std::vector<Vec3>& points, const ClosestPointTre
 
 // Returns the sum of the angles between both surfaces' shading normals at the samples, in degrees.
 double angle_sum(const Side& from, const Side& to, const PairedSamples& pairs, uint32_t threads) {
-    constexpr double kDegrees = 180 / std::numbers::pi;
     return parallel_sum(pairs.found.size(), threads, [&](size_t i) {
         const Vec2& b = pairs.samples.barycentrics[i];
         const Vec3 here =
             shading_normal_at(from.mesh, from.normals, pairs.samples.triangles[i], {1 - b[0] - b[1], b[0], b[1]});
         const Vec3 there = shading_normal_at(to.mesh, to.normals, pairs.found[i].triangle, pairs.found[i].barycentric);
-        return kDegrees * std::atan2(here.cross(there).norm(), here.dot(there));
+        return degrees_between(here, there);
     });
 }
 
@@ -194,6 +192,12 @@ Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& te
     GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
     GIM_TRY(mesh_b, checked_mesh(test, "test"));
     return ReferenceSurface(std::move(mesh_a), options.threads).compare(mesh_b, options);
+}
+
+Result<DefectMap> map_defects(const TriangleMesh& reference, const TriangleMesh& test, uint32_t threads) {
+    GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
+    GIM_TRY(mesh_b, checked_mesh(test, "test"));
+    return locate_defects(mesh_b, mesh_a, ClosestPointTree(mesh_a, threads), threads);
 }
 
 }  // namespace gim

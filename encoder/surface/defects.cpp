@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "encoder/base/disjoint_sets.h"
@@ -15,7 +13,6 @@ namespace gim {
 
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kFoldedBack = -0.86602540378443864676;  // -cos 30 degrees
 
 Vec3 face_normal(const Mesh& mesh, const Triangle& t) {
@@ -35,7 +32,7 @@ std::vector<double> normal_angles(const Mesh& from, const std::vector<Vec3>& fro
             const Vec3 here =
                 shading_normal_at(from, from_normals, pairs.samples.triangles[i], {1 - b[0] - b[1], b[0], b[1]});
             const Vec3 there = shading_normal_at(to, to_normals, pairs.found[i].triangle, pairs.found[i].barycentric);
-            angles[i] = kDegrees * std::atan2(here.cross(there).norm(), here.dot(there));
+            angles[i] = degrees_between(here, there);
         }
     });
     return angles;
@@ -103,12 +100,13 @@ std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh) {
 }
 
 Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& folded) {
+    const std::vector<uint32_t> first = first_at_position(mesh);
     DisjointSets groups(mesh.positions.size());
     for (size_t f = 0; f < folded.size(); ++f) {
         if (!folded[f]) continue;
         const Triangle& t = mesh.triangles[f];
-        groups.unite(t[0], t[1]);
-        groups.unite(t[0], t[2]);
+        groups.unite(first[t[0]], first[t[1]]);
+        groups.unite(first[t[0]], first[t[2]]);
     }
     struct Group {
         Defects::Fold fold;
@@ -118,7 +116,7 @@ Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& fo
     for (uint32_t f = 0; f < folded.size(); ++f) {
         if (!folded[f]) continue;
         const Triangle& t = mesh.triangles[f];
-        Group& group = found[groups.find(t[0])];
+        Group& group = found[groups.find(first[t[0]])];
         const double area = face_area(mesh, f);
         group.fold.area += area;
         group.fold.faces += 1;
@@ -133,6 +131,30 @@ Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& fo
         largest.fold.center = {center.x(), center.y(), center.z()};
     }
     return largest.fold;
+}
+
+DefectMap locate_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& tree, uint32_t threads) {
+    DefectMap map;
+    map.folded = find_folded_faces(test, reference, tree, threads);
+    map.folded_back = find_folded_back_edges(test);
+    const std::vector<Vec3> test_normals = shading_normals(test, NormalWeight::kAngle),
+                            reference_normals = shading_normals(reference, NormalWeight::kAngle);
+    std::vector<uint8_t> used(test.positions.size(), 0);
+    for (const Triangle& t : test.triangles) {
+        for (const uint32_t v : t) used[v] = 1;
+    }
+    map.off.resize(test.positions.size(), 0.0F);
+    parallel_blocks(map.off.size(), 2048, threads, [&](size_t, size_t begin, size_t end) {
+        uint32_t hint = kNone;
+        for (size_t v = begin; v < end; ++v) {
+            if (!used[v]) continue;
+            const ClosestPoint found = tree.find(test.positions[v], hint);
+            hint = found.triangle;
+            const Vec3 there = shading_normal_at(reference, reference_normals, found.triangle, found.barycentric);
+            map.off[v] = static_cast<float>(degrees_between(test_normals[v], there));
+        }
+    });
+    return map;
 }
 
 double percentile(std::vector<double>& values, double part) {

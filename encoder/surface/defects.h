@@ -31,13 +31,17 @@ std::vector<uint8_t> find_folded_faces(const Mesh& test, const Mesh& reference, 
 // positions count as one; the edges name the first of them.
 std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh);
 
-// Groups the folded faces that hang together by corners. Returns the group of the largest area.
+// Groups the folded faces that hang together by corners; corners at equal positions are one. Returns the group of the
+// largest area.
 Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& folded);
 
 // Measures the defects of `test` but for the two figures over the RMS distance. from_test, from_reference: samples on
 // that surface.
 Defects measure_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& reference_tree,
                         const PairedSamples& from_test, const PairedSamples& from_reference, uint32_t threads);
+
+// Does what map_defects() does.
+DefectMap locate_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& tree, uint32_t threads);
 
 // Returns the smallest value that at least `part` of the values do not exceed. values: not empty; reordered.
 double percentile(std::vector<double>& values, double part);

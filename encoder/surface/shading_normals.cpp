@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace gim {
@@ -69,6 +70,10 @@ Vec3 shading_normal_at(const Mesh& mesh, const std::vector<Vec3>& normals, uint3
     const Vec3 sum = barycentric[0] * normals[t[0]] + barycentric[1] * normals[t[1]] + barycentric[2] * normals[t[2]];
     const Vec3 normal = unit_or_zero(sum);
     return normal.isZero() ? unit_or_zero(area_vector(mesh, t)) : normal;
+}
+
+double degrees_between(const Vec3& a, const Vec3& b) {
+    return a.isZero() || b.isZero() ? 90 : 180 / std::numbers::pi * angle_between(a, b);
 }
 
 }  // namespace gim

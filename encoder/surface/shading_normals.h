@@ -27,4 +27,7 @@ std::vector<uint32_t> first_at_position(const Mesh& mesh);
 Vec3 shading_normal_at(const Mesh& mesh, const std::vector<Vec3>& normals, uint32_t triangle,
                        const std::array<double, 3>& barycentric);
 
+// Returns the angle between two normals, in degrees; 90 if one of them is zero.
+double degrees_between(const Vec3& a, const Vec3& b);
+
 }  // namespace gim

@@ -97,8 +97,10 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
     gim_info info;
     ASSERT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
     ASSERT_EQ(levels.size(), 3u);  // 65, 33, 17
+    CompareOptions options;
+    options.defects = true;
     for (uint32_t level = 0; level < levels.size(); ++level) {
-        const auto comparison = compare(mesh, as_input(decode_surface(bytes, level).value()), {});
+        const auto comparison = compare(mesh, as_input(decode_surface(bytes, level).value()), options);
         ASSERT_TRUE(comparison.ok());
         EXPECT_NEAR(levels[level].psnr, comparison.value().psnr, 0.1);
         EXPECT_LE(info.level_psnr[level], levels[level].psnr);
@@ -108,6 +110,8 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
         ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape), GIM_OK);
         EXPECT_EQ(levels[level].prefix_bytes, shape.prefix_size);
         EXPECT_EQ(levels[level].vertices, shape.vertex_count);
+        EXPECT_EQ(levels[level].defects.folded_faces, comparison.value().defects->folded_faces);
+        EXPECT_NEAR(levels[level].defects.normals_p99, comparison.value().defects->normals_p99, 1);
     }
     EXPECT_EQ(info.level_psnr[3], 0.0f);
 }
@@ -343,8 +347,24 @@ TEST(Encode, FitBringsTheSurfaceNearer) {
     const auto fitted = encode(mesh, options);
     ASSERT_TRUE(plain.ok() && fitted.ok());
     EXPECT_GT(fitted.value().report.error.psnr, plain.value().report.error.psnr + 1);
-    EXPECT_LE(fitted.value().report.folds, fitted.value().report.folds_before_fit);
     expect_topology_at_every_level(fitted.value(), "fitted");
+}
+
+TEST(Encode, FoldsAreThoseOfTheDecodedSurface) {
+    EncodeOptions options = small_options();
+    options.rate = {RateTarget::Kind::kQuality, 20};  // so coarse that the quantizer folds faces over
+    const TriangleMesh mesh = corpus::limbed_blob(24);
+    const auto encoded = encode(mesh, options);
+    ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+    const EncodeReport& report = encoded.value().report;
+    CompareOptions with_defects;
+    with_defects.defects = true;
+    const auto compared = compare(mesh, as_input(decode_surface(encoded.value().bytes, 0).value()), with_defects);
+    ASSERT_TRUE(compared.ok());
+    EXPECT_GT(report.folds, 0u);
+    EXPECT_EQ(report.folds, compared.value().defects->folded_faces);
+    EXPECT_EQ(report.folds, report.error.defects->folded_faces);
+    EXPECT_EQ(report.folds, report.levels[0].defects.folded_faces);
 }
 
 TEST(EncodeModels, SmallModelsKeepTheirTopologyAtEveryLevel) {

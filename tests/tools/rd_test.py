@@ -69,6 +69,16 @@ class Rows(unittest.TestCase):
             self.assertEqual(list(measure.Results(path).rows.values()), [row])
 
 
+    def test_rows_of_a_file_with_fewer_columns_are_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "results.csv"
+            old = [column for column in measure.COLUMNS if column != "normals_p99"]
+            path.write_text(",".join(old) + "\n" + ",".join("1" for _ in old) + "\n", encoding="utf-8")
+            (row,) = measure.Results(path).rows.values()
+            self.assertEqual(row, dict.fromkeys(measure.COLUMNS, "1") | {"normals_p99": ""})
+            self.assertEqual(path.read_text(encoding="utf-8").splitlines()[0], ",".join(measure.COLUMNS))
+
+
 class Run(unittest.TestCase):
     def run_on(self, folder, *more):
         gim, corpus, rivals = PROGRAMS
@@ -94,6 +104,8 @@ class Run(unittest.TestCase):
                 self.assertEqual(row["status"], "ok", row)
                 self.assertGreater(float(row["psnr"]), 20, row)
                 self.assertLess(float(row["normal_degrees"]), 90, row)
+                self.assertGreater(float(row["normals_p99"]), float(row["normal_degrees"]), row)
+                self.assertGreaterEqual(int(row["folded_faces"]), 0, row)
                 self.assertGreater(int(row["bytes"]), 100, row)
             if "draco" in tools:
                 self.assertTrue(all(float(r["decode_ms"]) > 0 for r in rows if r["tool"] == "draco"))

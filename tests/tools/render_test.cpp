@@ -57,6 +57,65 @@ TEST(Render, BrokenMeshesGiveAPicture) {
     EXPECT_LT(red(picture, 16, 45), 230);
 }
 
+struct Rgb {
+    int r = 0, g = 0, b = 0;
+};
+Rgb pixel(const Picture& p, uint32_t x, uint32_t y) {
+    const size_t i = 3 * (size_t{y} * p.width + x);
+    return {p.rgb[i], p.rgb[i + 1], p.rgb[i + 2]};
+}
+bool is_red(const Rgb& c) { return c.r > 120 && c.g < 60 && c.b < 60; }
+bool is_dark_red(const Rgb& c) { return c.r > 60 && c.r < 120 && c.g < 60 && c.b < 60; }
+size_t count_pixels(const Picture& p, bool (*is_one)(const Rgb&)) {
+    size_t count = 0;
+    for (uint32_t y = 0; y < p.height; ++y) {
+        for (uint32_t x = 0; x < p.width; ++x) count += is_one(pixel(p, x, y));
+    }
+    return count;
+}
+
+// Four squares in a row, in the x-y plane, seen from +z. The map says what is wrong with which.
+TEST(Render, DefectsHaveTheirColours) {
+    TriangleMesh mesh;
+    for (uint32_t i = 0; i < 4; ++i) {
+        for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+            mesh.positions.push_back({static_cast<double>(i) + x, static_cast<double>(y), 0});
+        mesh.triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
+        mesh.triangles.push_back({4 * i, 4 * i + 2, 4 * i + 3});
+    }
+    DefectMap map{.folded = std::vector<uint8_t>(8, 0), .off = std::vector<float>(16, 0), .folded_back = {{13, 14}}};
+    std::fill_n(map.off.begin() + 4, 4, 30.0F);
+    std::fill_n(map.off.begin() + 8, 4, 60.0F);
+    map.folded[6] = map.folded[7] = 1;
+    const View view = {.up = UpAxis::kY, .azimuth = 0, .elevation = 0, .size = 128};
+    const Picture picture = render_defects(mesh, map, view);
+    const Rgb plain = pixel(picture, 20, 64), yellow = pixel(picture, 49, 64), orange = pixel(picture, 79, 64);
+    EXPECT_NEAR(plain.r, plain.b, 12);
+    EXPECT_NEAR(yellow.r, yellow.g, 25);
+    EXPECT_GT(yellow.g, yellow.b + 40);
+    EXPECT_GT(orange.r, orange.g + 50);
+    EXPECT_GT(orange.g, orange.b + 40);
+    EXPECT_TRUE(is_red(pixel(picture, 108, 64)));
+    EXPECT_GT(count_pixels(picture, is_dark_red), 20U);  // the edge at the right end
+}
+
+TEST(Render, AFoldSmallerThanAPixelIsADot) {
+    TriangleMesh mesh = {
+        {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.5001, 0.5, 0}, {0.5, 0.5001, 0}},
+        {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}}};
+    const View view = {.up = UpAxis::kY, .azimuth = 0, .elevation = 0, .size = 64};
+    DefectMap map{.folded = {0, 0, 1}, .off = std::vector<float>(7, 0), .folded_back = {}};
+    EXPECT_GE(count_pixels(render_defects(mesh, map, view), is_red), 2U);
+    map.folded[2] = 0;
+    EXPECT_EQ(count_pixels(render_defects(mesh, map, view), is_red), 0U);
+    // A fold closely below the surface shows, one far behind it does not.
+    map.folded[2] = 1;
+    for (size_t v = 4; v < 7; ++v) mesh.positions[v][2] = -0.005;
+    EXPECT_GE(count_pixels(render_defects(mesh, map, view), is_red), 2U);
+    for (size_t v = 4; v < 7; ++v) mesh.positions[v][2] = -0.5;
+    EXPECT_EQ(count_pixels(render_defects(mesh, map, view), is_red), 0U);
+}
+
 TEST(Render, GeometryImagesShowCoordinatesAsColours) {
     const std::vector<DecodedImage> images = {torus_image(9)};
     const Picture picture = render_images(images, 90);

@@ -152,19 +152,18 @@ def size_table(models, recorded):
     return markdown(["model", "bytes at"] + [f"{db} dB" for db in TARGETS_DB], lines)
 
 
-def normal_table(models):
+def normal_table(models, column, what):
     """Writes the normal error of the files on the PSNR curve, and the least error of any setting at these bytes."""
     lines = []
     for model, rows in models.items():
         for tool, of_tool in by_tool(rows).items():
-            chosen = points_of(curve_rows(of_tool), "normal_degrees")
-            least = front(points_of(of_tool, "normal_degrees"), better=-1)
+            chosen = points_of(curve_rows(of_tool), column)
+            least = front(points_of(of_tool, column), better=-1)
             found = [value_at(curve, size) for curve in (chosen, least) for size in NORMAL_BYTES]
             if any(f is not None for f in found):
                 lines.append([model, label(tool)] + [cell(f, ".2f") for f in found])
     sizes = [f"{n:,} bytes" for n in NORMAL_BYTES]
-    return markdown(["model", "mean normal error, degrees, at"] + sizes + [f"{n}, best setting for it" for n in sizes],
-                    lines)
+    return markdown(["model", f"{what}, degrees, at"] + sizes + [f"{n}, best setting for it" for n in sizes], lines)
 
 
 def is_usual_full_mesh(row):

@@ -15,7 +15,8 @@ from pathlib import Path
 import curves
 
 COLUMNS = ["model", "tool", "setting", "status", "bytes", "psnr", "rms_to_test", "rms_to_reference", "hausdorff",
-           "diagonal", "normal_degrees", "vertices", "triangles", "watertight", "encode_s", "decode_ms", "mtri_per_s",
+           "diagonal", "normal_degrees", "normals_p99", "off_by_45", "folded_faces", "folded_area", "folded_back_edges",
+           "vertices", "triangles", "watertight", "encode_s", "decode_ms", "mtri_per_s",
            "program"]
 KEY = COLUMNS[:3]
 
@@ -35,7 +36,8 @@ class Stopped(Exception):
 
 
 class Results:
-    """Keeps the rows in memory and on disk. Appending is one write. Reading drops a line that an interruption tore."""
+    """Keeps the rows in memory and on disk. Appending is one write. Reading drops a line that an interruption tore, and
+    leaves cells empty whose column an older file lacks."""
 
     def __init__(self, path):
         self.path = Path(path)
@@ -44,8 +46,8 @@ class Results:
         if self.path.exists():
             with open(self.path, newline="", encoding="utf-8") as file:
                 for row in csv.DictReader(file):
-                    if None not in row and all(row.get(c) is not None for c in COLUMNS):
-                        self.rows[tuple(row[k] for k in KEY)] = row
+                    if None not in row and None not in row.values():
+                        self.rows[tuple(row[k] for k in KEY)] = {c: row.get(c, "") for c in COLUMNS}
         self.rewrite()
 
     def __contains__(self, key):
@@ -195,6 +197,9 @@ class Laboratory:
         row = {key: f"{distances[key]:.7g}" for key in ("rms_to_test", "rms_to_reference", "hausdorff", "diagonal")}
         row["psnr"] = "" if distances["psnr"] is None else f"{distances['psnr']:.4f}"
         row["normal_degrees"] = f"{distances['normal_error']['mean']:.4f}"
+        defects = distances["defects"]
+        row.update({key: f"{defects[key]:.5g}" for key in ("normals_p99", "off_by_45", "folded_area")})
+        row.update({key: defects[key] for key in ("folded_faces", "folded_back_edges")})
         row.update({key: topology[key] for key in ("vertices", "triangles")})
         row["watertight"] = int(topology["watertight"])
         return row

@@ -65,17 +65,23 @@ def decode_picture(path, model, rows):
     finish(figure, axes, path)
 
 
-def normal_picture(path, model, rows):
-    figure, axes = plt.subplots(figsize=(6.4, 4.6))
+def draw_normals(axes, rows, column, what, top):
     for tool, of_tool in curves.by_tool(rows).items():
-        shown = sorted(curves.points_of(curves.curve_rows(of_tool), "normal_degrees"))  # the files of the PSNR curve
+        shown = sorted(curves.points_of(curves.curve_rows(of_tool), column))  # the files of the PSNR curve
         if shown:
             axes.plot(*zip(*shown), marker=".", markersize=4, label=curves.label(tool), **style(tool))
     byte_axis(axes)
-    axes.set_ylabel("mean shading-normal error, degrees")
-    axes.set_ylim(bottom=0, top=25)
-    axes.set_title(model)
-    finish(figure, axes, path)
+    axes.set_ylabel(f"shading-normal error, {what}, degrees")
+    axes.set_ylim(bottom=0, top=top)
+    axes.grid(True, which="both", linewidth=0.3)
+
+
+def normal_picture(path, model, rows):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.8, 4.6))
+    draw_normals(left, rows, "normal_degrees", "mean", top=25)
+    draw_normals(right, rows, "normals_p99", "99th percentile", top=90)
+    figure.suptitle(model)
+    finish(figure, left, path)
 
 
 def summary_picture(path, models, recorded):

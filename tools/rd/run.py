@@ -4,9 +4,9 @@
 gim codes each model as one square and as charts. Draco and meshoptimizer + zstd code it as it is and after
 simplification (meshopt_simplify, or Lindstrom-Turk if CGAL is installed). Each program runs at many settings.
 `gim compare` measures each decoded result against the model: symmetric PSNR, RMS distance both ways, Hausdorff
-distance, and the mean angle between shading normals. Samples are uniform by area, on both surfaces. Each is compared
-with the nearest point of the other surface. The decoders are timed in memory, on one thread, in turns. The folder --out
-receives:
+distance, the angle between shading normals (mean and 99th percentile) and visible defects. Samples are uniform by
+area, on both surfaces. Each is compared with the nearest point of the other surface. The decoders are timed in memory,
+on one thread, in turns. The folder --out receives:
 
   results.csv      one row per model, tool and setting; a later run keeps the rows and measures what is missing
   MODEL-psnr.png   PSNR over bytes;  MODEL-decode.png decode time over PSNR;  MODEL-normals.png normal error over bytes
@@ -242,7 +242,8 @@ def write_results(arguments, models, results, plots):
     rows = {name: of_model for name, of_model in rows.items() if of_model}
     recorded = curves.read_recorded_rivals(arguments.recorded_rivals)
     failed = [row for of_model in rows.values() for row in of_model if row["status"] != "ok"]
-    text = "\n\n".join([curves.size_table(rows, recorded), curves.normal_table(rows), curves.decode_table(rows)])
+    text = "\n\n".join([curves.size_table(rows, recorded), curves.normal_table(rows, "normal_degrees", "mean normal error"),
+                        curves.normal_table(rows, "normals_p99", "normal error, 99th percentile"), curves.decode_table(rows)])
     if failed:
         text += f"\n\n{len(failed)} settings failed:\n" + "\n".join(
             f"- {r['model']}, {r['tool']}, {r['setting']}: {r['status'][len('failed: '):]}" for r in failed)

@@ -116,7 +116,7 @@ struct Defects {
     double p999_over_rms = 0, max_over_rms = 0;  // 99.9th percentile and maximum of the distance, over Comparison::rms
     // Edges where two triangles meet at more than 150 degrees between their normals.
     uint64_t folded_back_edges = 0, folded_back_edges_of_reference = 0;
-    // The largest set of folded faces that hang together by corners. All zero if there is none.
+    // The largest set of folded faces that hang together by corners. All zero if nothing is folded.
     struct Fold {
         std::array<double, 3> center = {0, 0, 0};  // object units
         double area = 0;                           // object units, squared
@@ -138,6 +138,17 @@ struct Comparison {
     std::optional<Defects> defects = {};      // set if CompareOptions::defects is
 };
 Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options);
+
+// Where the defects of a test surface are, for pictures. Terms as in Defects.
+struct DefectMap {
+    std::vector<uint8_t> folded;  // per triangle: 1 if it is folded over, else 0
+    // Per vertex: angle, in degrees, between its shading normal and that of the nearest point of the reference. 0 if no
+    // triangle uses the vertex.
+    std::vector<float> off;
+    std::vector<std::array<uint32_t, 2>> folded_back;  // edges, by vertex
+};
+// threads: as in CompareOptions. Cost: O((|A|+|B|) log).
+Result<DefectMap> map_defects(const TriangleMesh& reference, const TriangleMesh& test, uint32_t threads = 0);
 
 // The connectivity of a mesh, by its indices. Vertices at equal positions are not merged.
 struct TopologySummary {
@@ -221,6 +232,7 @@ struct LevelReport {
     uint64_t vertices = 0, triangles = 0;  // of the decoded surface
     uint64_t prefix_bytes = 0;             // bytes from the start of the file that this level needs
     double psnr = 0;                       // dB, decoded surface against the input mesh
+    Defects defects = {};                  // likewise; coarser levels are measured with fewer samples
 };
 
 struct StageTime {
@@ -254,9 +266,10 @@ struct EncodeReport {
     uint64_t defined_samples = 0;                         // kMcgim
     double packing_efficiency = 0;                        // kMcgim: defined_samples / samples
     double cut_length = 0;                                // object units
-    double stretch_efficiency = 0;                    // 1 / (normalised L2 stretch)^2; 0..1, 1: uniform and isotropic
-    uint64_t folds = 0, folds_before_fit = 0;         // image faces that look away from the input's surface
-    uint64_t flipped_triangles = 0;                   // in the parametrization; always 0 if encoding succeeds
+    double stretch_efficiency = 0;   // 1 / (normalised L2 stretch)^2; 0..1, 1: uniform and isotropic
+    uint64_t folds = 0;              // triangles of decoded level 0 that look away from the input: error's folded_faces
+    uint64_t folds_before_fit = 0;   // faces of the sampled image that do, before it is fitted; 0 without fit
+    uint64_t flipped_triangles = 0;  // in the parametrization; always 0 if encoding succeeds
     double bits_per_sample = 0, bits_per_vertex = 0;  // bits of the file per sample, per input vertex
     uint64_t file_bytes = 0, sideband_bytes = 0;
     std::vector<PlaneReport> planes;
