@@ -467,6 +467,8 @@ std::vector<Vec3> FoldRepair::decode(std::span<const Pyramid<int32_t>> bands, co
 }
 
 void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes) {
+    // What an earlier call found must not change the result.
+    std::fill(nearest_.begin(), nearest_.end(), kNone);
     for (int pass = 0; pass < passes; ++pass) {
         if (FoldPass(*this, bands, units).run() == 0) break;
     }
