@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 #include "encoder/squares/write_squares.h"
 #include "gim/decoder.hpp"
 #include "tests/encoder/grid_images.h"
+#include "tests/format/random_sideband.h"
 
 namespace gim {
 namespace {
@@ -73,6 +75,67 @@ TEST(CodeBands, QuantizedImageIsWhatADecoderMakes) {
             for (size_t i = 0; i < decoded.size(); ++i)
                 ASSERT_NEAR(expected[i] + middle, decoded[i], 0.02f) << quantizer;
         }
+}
+
+// Returns the images on the way. The last one must be the quantizer's own.
+std::vector<std::vector<float>> expect_same_image(const Pyramid<float>& pyramid, const DetailCoding& coding,
+                                                  const SeamTable* seams) {
+    const QuantizedImage quantized = quantize_bands(pyramid, coding, seams);
+    std::vector<std::vector<float>> images = decode_bands(quantized.bands, coding, seams);
+    EXPECT_EQ(images.size(), size_t{pyramid.steps()} + 1);
+    EXPECT_EQ(images.back(), quantized.image);
+    return images;
+}
+
+TEST(CodeBands, DecodedBandsAreTheQuantizersImageBitForBit) {
+    for (const SquareImage& image : {waves(), torus_image(kSide, 700, 300)}) {
+        for (const double quantizer : {1.0, 8.0, 60.0, 500.0}) {
+            const SeamTable seams = seams_of(image);
+            const Header header = squares_writer({&image, 1}, lossy(1)).value().header(quantizer);
+            const auto images = expect_same_image(pyramid_of(image, header), detail_coding_of(header), &seams);
+            for (size_t step = 0; step < images.size(); ++step) {
+                const size_t side = step == 0 ? 2 : (size_t{1} << step) + 1;
+                EXPECT_EQ(images[step].size(), 3 * side * side);
+            }
+        }
+    }
+}
+
+std::vector<float> random_image(test::Random& random, size_t samples) {
+    std::vector<float> image;
+    for (size_t i = 0; i < 3 * samples; ++i) image.push_back(100 * (random.unit() - 0.5f));
+    return image;
+}
+
+TEST(CodeBands, SharedDetailsAreDecodedFromTheirSourcesOnly) {
+    test::Random random(3);
+    const uint32_t side = 33;
+    const DetailCoding coding{3, true, 3, 400};
+    for (int round = 0; round < 20; ++round) {
+        SeamTable seams;
+        const Sideband sideband = test::random_sideband(random, 9, 1 + random.below(12), random.below(8), false);
+        ASSERT_EQ(build_seam_table(sideband, &seams), Status::kOk);
+        const Pyramid<float> pyramid = analyse<Irreversible97>(random_image(random, size_t{side} * side), side, &seams);
+        const std::vector<float> image = expect_same_image(pyramid, coding, &seams).back();
+        Pyramid<int32_t> bands = quantize_bands(pyramid, coding, &seams).bands;
+        for (uint32_t step = 1; step <= bands.steps(); ++step) {
+            const OwnSharedRim rim(&seams, bands.columns_at(step));
+            rim.view().for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+                bands_of(bands, step - 1).of(orientation).row(row)[3 * column] = 99;
+            });
+        }
+        EXPECT_EQ(decode_bands(bands, coding, &seams).back(), image);
+    }
+}
+
+TEST(CodeBands, RectanglesWithoutSeamsDecodeToTheQuantizersImageToo) {
+    test::Random random(4);
+    for (const auto& [columns, rows, steps] :
+         {std::array{75u, 46u, 4u}, std::array{2u, 30u, 0u}, std::array{9u, 5u, 2u}}) {
+        const Pyramid<float> pyramid =
+            analyse<Irreversible97>(random_image(random, size_t{columns} * rows), columns, rows, steps);
+        expect_same_image(pyramid, {5, true, 3, 900}, nullptr);
+    }
 }
 
 TEST(CodeBands, FineSteppedDetailsComeBackThroughTheirFrames) {

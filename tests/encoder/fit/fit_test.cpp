@@ -55,6 +55,16 @@ TEST(Fit, ComesNearerBothWays) {
     }
 }
 
+TEST(Fit, OneFoldInThousandsOfSamplesMayComeWithIt) {
+    const Mesh reference = bumpy_torus();
+    for (const uint32_t side : {65u, 129u}) {
+        const SquareImage start = image_on(reference, side);
+        const Fitted fitted = fit(start, reference, {.strength = FitOptions::Strength::kLoose, .rounds = 8}).value();
+        EXPECT_TRUE(fitted.improved);
+        EXPECT_LE(fitted.after.folds, std::max<uint64_t>(fitted.before.folds, side * side / 8000));
+    }
+}
+
 TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
     const Mesh reference = bumpy_torus();
     SquareImage fitted = image_on(reference, 33);

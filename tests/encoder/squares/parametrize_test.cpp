@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "encoder/squares/boundary_map.h"
 #include "encoder/squares/cut.h"
+#include "encoder/squares/make_square.h"
 #include "encoder/squares/sample_square.h"
+#include "encoder/surface/defects.h"
 #include "encoder/surface/stretch.h"
 #include "tests/encoder/stage_meshes.h"
 
@@ -49,6 +54,64 @@ TEST(Parametrize, BoundaryStaysWhereItWasPut) {
     const auto uv = parametrize(boundary.opened.mesh, boundary.sides, start, {});
     ASSERT_TRUE(uv.ok());
     for (const uint32_t v : boundary.opened.loop) EXPECT_EQ(uv.value()[v], start[v]);
+}
+
+// Per face: the larger singular value of the map from the square over the smaller one.
+std::vector<double> anisotropies(const Mesh& mesh, const std::vector<Vec2>& uv) {
+    std::vector<double> result;
+    for (const Triangle& t : mesh.triangles) {
+        const FaceMetric metric = face_metric(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], 0);
+        const double area = 2 * metric.weight;
+        if (!(area > 0)) continue;
+        // The sum of the squared singular values over their product.
+        const double ratio = 2 * stretch_energy(metric, uv[t[0]], uv[t[1]], uv[t[2]]) / area *
+                             (0.5 * twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]])) / area;
+        result.push_back(0.5 * (ratio + std::sqrt(std::max(0.0, ratio * ratio - 4))));
+    }
+    return result;
+}
+
+// A limbed body, cut open as the encoder does it.
+SquareBoundary limbs_cut_open(uint32_t side) {
+    const Mesh mesh = clean(corpus::limbed_blob(24)).value().mesh;
+    EncodeOptions options;
+    options.side = side;
+    return cut_open(make_cuttable(mesh, side), options, {}).value().boundary;
+}
+
+TEST(Parametrize, SqueezeKeepsSamplesOnLongLimbsFromCrowdingInOneDirection) {
+    const uint32_t side = 65;
+    const SquareBoundary boundary = limbs_cut_open(side);
+    const Mesh& disk = boundary.opened.mesh;
+    std::vector<double> most, efficiency;
+    for (const double squeeze : {0.0, 0.2, 1.0}) {
+        ParametrizeOptions options;
+        options.squeeze = squeeze;
+        const auto uv = parametrize(disk, boundary.sides, boundary_uv(boundary, side), options);
+        ASSERT_TRUE(uv.ok()) << uv.error().message;
+        EXPECT_EQ(count_flipped(disk, uv.value()), 0u) << squeeze;
+        std::vector<double> values = anisotropies(disk, uv.value());
+        most.push_back(percentile(values, 0.99));
+        efficiency.push_back(stretch_efficiency(disk, uv.value(), 1));
+    }
+    EXPECT_LT(most[1], 0.8 * most[0]);
+    EXPECT_LT(most[2], 0.6 * most[0]);
+    // Without a squeeze nothing but stretch counts.
+    EXPECT_GT(efficiency[0], efficiency[1]);
+    EXPECT_GT(efficiency[1], efficiency[2]);
+}
+
+TEST(Parametrize, SqueezeIsFreeUnlessAskedFor) {
+    EXPECT_EQ(ParametrizeOptions{}.squeeze, 0);
+    const Mesh mesh = clean(corpus::torus(30, 15, 1, 0.4)).value().mesh;
+    const SquareBoundary boundary = laid_out(mesh, 65);
+    const std::vector<Vec2> border = boundary_uv(boundary, 65);
+    ParametrizeOptions free;
+    free.squeeze = 1e-300;
+    const auto with_none = parametrize(boundary.opened.mesh, boundary.sides, border, {}),
+               with_next_to_none = parametrize(boundary.opened.mesh, boundary.sides, border, free);
+    ASSERT_TRUE(with_none.ok() && with_next_to_none.ok());
+    EXPECT_EQ(with_none.value(), with_next_to_none.value());
 }
 
 TEST(Sample, EveryGridPointIsOnTheSurfaceAndMatesAreBitEqual) {
