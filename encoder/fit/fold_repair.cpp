@@ -17,7 +17,7 @@ namespace gim {
 namespace {
 
 // Cosine below which a face counts as folded. At creases a good face may stand across the nearest face.
-constexpr double kSteep = 0.15, kSteepAtCrease = 0;
+constexpr double kSteep = 0.03, kSteepAtCrease = 0.03;
 constexpr double kCrease = 0.7;  // cosine between faces of the reference that meet at a crease
 constexpr double kFold = 20;     // bits that a folded face is worth at least
 constexpr double kTurn = 10;     // bits for each unit of the cosine below that
@@ -25,7 +25,7 @@ constexpr double kTurn = 10;     // bits for each unit of the cosine below that
 constexpr double kBitsPerDistance = 8.7;
 constexpr double kLeastGain = 4;       // bits
 constexpr double kMostSlope = 2;       // of a detail's response at depth 1, between neighbours; generous
-constexpr uint32_t kDeepest = 4;       // depth of the coarsest details that are changed
+constexpr uint32_t kDeepest = 3;       // depth of the coarsest details that are changed
 constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
 
 // A detail of a part.

@@ -66,7 +66,9 @@ TEST(ChartRamp, CorrectionsFadeLayerByLayerAndEndAtTheWidth) {
             for (uint32_t column = 0; column < box.columns; ++column) {
                 const uint32_t i = row * box.columns + column;
                 const int layer = box.steps_inside(row, column);
-                if (layer < 0) EXPECT_EQ(box.depth[i], kUndefined);
+                if (layer < 0) {
+                    EXPECT_EQ(box.depth[i], kUndefined);
+                }
                 if (layer < 0 || layer > width) {
                     for (size_t k = 0; k < 3; ++k) EXPECT_EQ(box.samples[3 * i + k], 0.0f);
                     continue;
@@ -95,7 +97,9 @@ TEST(ChartRamp, ASingleCorrectionStaysAroundItsPlace) {
         for (uint32_t column = 0; column < box.columns; ++column) {
             const bool is_near = std::max(column, at) - std::min(column, at) <= row;
             const float moved = box.samples[3 * (row * box.columns + column)];
-            if (!is_near) EXPECT_EQ(moved, 0.0f) << row << ", " << column;
+            if (!is_near) {
+                EXPECT_EQ(moved, 0.0f) << row << ", " << column;
+            }
             EXPECT_LE(moved, 1.0f);
         }
     }
