@@ -16,11 +16,10 @@ namespace gim {
 
 namespace {
 
-// Cosine below which a face counts as folded. At creases a good face may stand across the nearest face.
-constexpr double kSteep = 0.03, kSteepAtCrease = 0.03;
-constexpr double kCrease = 0.7;  // cosine between faces of the reference that meet at a crease
-constexpr double kFold = 20;     // bits that a folded face is worth at least
-constexpr double kTurn = 10;     // bits for each unit of the cosine below that
+// Cosine below which a face counts as folded. At creases a good face may stand across the nearest one.
+constexpr double kSteep = 0.03;
+constexpr double kFold = 20;  // bits that a folded face is worth at least
+constexpr double kTurn = 10;  // bits for each unit of the cosine below that
 // A bit lowers the squared distance, in squared steps, by the inverse of this at high rates (fit_coded.cpp).
 constexpr double kBitsPerDistance = 8.7;
 constexpr double kLeastGain = 4;       // bits
@@ -145,7 +144,7 @@ class FoldPass {
                     const auto slot = static_cast<uint32_t>(2 * cell + half);
                     const double c = cosine(slot, faces[half]);
                     least = std::min(least, c);
-                    if (c < r_.steep_[r_.nearest_[slot]]) is_steep[cell] = 1;
+                    if (c < kSteep) is_steep[cell] = 1;
                 }
                 margin_[cell] = margin_of(faces, least);
             }
@@ -180,8 +179,7 @@ class FoldPass {
             const uint32_t face = r_.nearest_[slot] != kNone ? r_.nearest_[slot] : r_.nearest_[slot ^ 1];
             if (face == kNone) continue;
             const double c = normal_of(faces[half]).dot(r_.reference_.normals[face]);
-            const double steep = r_.steep_[face];
-            if (c < steep) cost += kFold + kTurn * (steep - c);
+            if (c < kSteep) cost += kFold + kTurn * (kSteep - c);
         }
         return cost;
     }
@@ -406,18 +404,6 @@ class FoldPass {
     std::vector<double> margin_;  // per cell
 };
 
-// Returns for each face of the reference the cosine below which a face near it counts as folded.
-std::vector<double> steepness_at(const FitReference& reference) {
-    const Topology topology = build_topology(reference.mesh);
-    std::vector<double> steep(reference.normals.size(), kSteep);
-    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
-        if (topology.twin[h] == kNone) continue;
-        const Vec3 &a = reference.normals[face_of(h)], &b = reference.normals[face_of(topology.twin[h])];
-        if (a.dot(b) < kCrease) steep[face_of(h)] = kSteepAtCrease;
-    }
-    return steep;
-}
-
 FoldRepair::FoldRepair(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front,
                        std::vector<CodedPart> parts, CloseSeams close)
     : gluing_(gluing),
@@ -426,7 +412,6 @@ FoldRepair::FoldRepair(const GridGluing& gluing, const FitReference& reference, 
       front_(front),
       parts_(std::move(parts)),
       close_(std::move(close)),
-      steep_(steepness_at(reference_)),
       nearest_(2 * gluing.kind.size(), kNone) {
     for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
 }
@@ -439,7 +424,6 @@ FoldRepair::FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector
       front_(front_side(frame_.into(image.positions), gluing_, reference_)),
       parts_(std::move(parts)),
       close_(std::move(close)),
-      steep_(steepness_at(reference_)),
       nearest_(2 * gluing_.kind.size(), kNone) {
     for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
 }

@@ -64,7 +64,6 @@ class FoldRepair {
     std::vector<CodedPart> parts_;
     CloseSeams close_;
     std::vector<DetailResponses> responses_;  // per part
-    std::vector<double> steep_;               // per face of the reference: cosine below which a face is folded
     std::vector<uint32_t> nearest_;           // per slot: a face of the reference that was near
 };
 
