@@ -13,7 +13,8 @@
 namespace gim {
 
 Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
-                             const EncodeOptions& options, StageClock& clock, EncodeReport report) {
+                             const EncodeOptions& options, const Contest& contest, StageClock& clock,
+                             EncodeReport report) {
     Encoded encoded{{}, std::move(report)};
     images.describe(encoded.report);
     const ReferenceSurface surface(std::move(reference), options.threads);
@@ -32,7 +33,7 @@ Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const Triangl
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
     parameters.level_psnr = true;
-    GIM_TRY(bytes, search_rate(images, parameters, options, surface, clock));
+    GIM_TRY(bytes, search_rate(images, parameters, options, contest, surface, clock));
     encoded.bytes = std::move(bytes);
 
     clock.begin(Stage::kCompare);

@@ -4,14 +4,17 @@
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/layout/layout_images.h"
+#include "encoder/rate_search.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {
 
-// Codes images to the target of the options. Compares the decoded surface with `reference`. `input`: the mesh as read,
+// Codes images to the target of the options. contest: other sides of the square, or
+// none. Compares the decoded surface with `reference`. `input`: the mesh as read,
 // which has the colours. Returns the file with the completed report.
 Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
-                             const EncodeOptions& options, StageClock& clock, EncodeReport report);
+                             const EncodeOptions& options, const Contest& contest, StageClock& clock,
+                             EncodeReport report);
 
 }  // namespace gim

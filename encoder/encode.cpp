@@ -44,10 +44,11 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     if (layout == nullptr)
         return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim or auto"};
     CutPreferences cuts;  // chosen at the first side, then kept
-    const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Observer& shown) -> Result<Encoded> {
+    const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
+                                         const Observer& shown) -> Result<Encoded> {
         EncodeReport report = input_report;
         GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));
-        return code_to_file(*images, cleaned.mesh, input, now, clock, std::move(report));
+        return code_to_file(*images, cleaned.mesh, input, now, contest, clock, std::move(report));
     };
     return best_of_sides(make_and_code, options, clock, observer);
 }

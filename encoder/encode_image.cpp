@@ -36,7 +36,7 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     squares.images.push_back(std::move(image));
     squares.surfaces.push_back(surface);
     const auto images = squares_layout(std::move(squares), options);
-    return code_to_file(*images, std::move(surface), {}, options, clock, std::move(report));
+    return code_to_file(*images, std::move(surface), {}, options, {}, clock, std::move(report));
 }
 
 }  // namespace

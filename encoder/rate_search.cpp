@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "encoder/code/decode_surface.h"
+#include "encoder/code/next_quantizer.h"
 #include "encoder/code/quantizer_bracket.h"
 #include "encoder/code/rate_target.h"
 
@@ -132,11 +133,12 @@ Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateT
 // Finds the file that meets a rate target.
 class RateSearch {
   public:
-    RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
+    RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options, const Contest& contest,
                const ReferenceSurface& reference, StageClock& clock)
         : images_(images),
           parameters_(std::move(parameters)),
           target_(options.rate),
+          contest_(contest),
           reference_(reference),
           clock_(clock) {
         parameters_.lossless = target_.kind == RateTarget::Kind::kLossless;
@@ -167,7 +169,7 @@ class RateSearch {
         const bool is_far =
             finally_fitted_to_ == 0 || std::abs(std::log2(quantizer / finally_fitted_to_)) > Values::kNear;
         if (is_far) finally_fitted_to_ = quantizer;
-        return fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust);
+        return fitted_file(quantizer, is_far ? CodedFit::Effort::kPatient : CodedFit::Effort::kAdjust);
     }
 
     double slack_in_octaves() const {
@@ -187,12 +189,24 @@ class RateSearch {
         return octaves_to(wanted, 0, comparison.psnr);
     }
 
+    // Estimates whether a search that goes on from this file would lose against another side. over: by how much of its
+    // bytes the file may seem too large.
+    bool is_losing(const Bytes& bytes, double room, std::optional<double> slope, double over) const {
+        if (target_.kind != RateTarget::Kind::kPsnr) return false;
+        const bool are_samples_few = slope && *slope < Values::kHopelessSlope && room < -Values::kHopelessRoom;
+        if (contest_.is_finer_to_come && are_samples_few) return true;
+        const double at_target = double(bytes.size()) * std::pow(Values::kBytesPerOctave, -room);
+        return contest_.rival_bytes > 0 && at_target > (1 + over) * contest_.rival_bytes;
+    }
+
     // Approaches the target's quantizer by quick fits.
     Result<double> approach(double quantizer) {
+        NextQuantizer next(Values::kMostStep);
         for (int k = 0; k < Values::kMostApproaches; ++k) {
             GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
             GIM_TRY(octaves, room(bytes));
-            quantizer = coarser_quantizer(quantizer, octaves, Values::kMostStep);
+            quantizer = next.after(quantizer, octaves);
+            if (is_losing(bytes, octaves, next.slope(), Values::kQuickExcess)) return lost();
             if (std::abs(octaves) < Values::kNear) break;
         }
         return quantizer;
@@ -202,19 +216,24 @@ class RateSearch {
     // quantizer that it is fitted to. A tenth of an octave finer would make it larger and farther from the surface.
     Result<Bytes> fit_to_target(double quantizer) {
         Bytes best;
+        NextQuantizer next(Values::kMostFinalStep);
         for (int k = 0; k < Values::kMostFits; ++k) {
             GIM_TRY(bytes, finally_fitted_file(quantizer));
             GIM_TRY(octaves, room(bytes));
             GIM_TRY(is_met, meets_target(bytes));
+            const double tried = quantizer;
+            quantizer = next.after(tried, octaves);
+            const bool is_losing_now = is_losing(bytes, octaves, next.slope(), Values::kFinalExcess);
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
             if (is_met && std::abs(octaves) <= slack_in_octaves() / 2) return best;
-            const double next = coarser_quantizer(quantizer, octaves, Values::kMostFinalStep);
-            if (next == quantizer) break;
-            quantizer = next;
+            if (best.empty() && is_losing_now) return lost();
+            if (quantizer == tried) break;
         }
         if (!best.empty()) return best;
         return search(quantizer);
     }
+
+    static Error lost() { return {Stage::kCode, "another size of image takes fewer bytes"}; }
 
     Result<bool> meets_target(const Bytes& bytes) const {
         if (target_.kind == RateTarget::Kind::kBytes) return double(bytes.size()) <= target_.value;
@@ -320,6 +339,7 @@ class RateSearch {
     Bytes nearest_;                 // the file of the least largest distance so far
     double least_distance_ = 0;
     const RateTarget target_;
+    const Contest contest_;
     const ReferenceSurface& reference_;
     StageClock& clock_;
     CompareOptions quick_, full_;
@@ -328,8 +348,8 @@ class RateSearch {
 }  // namespace
 
 Result<Bytes> search_rate(LayoutImages& images, const CodingParameters& parameters, const EncodeOptions& options,
-                          const ReferenceSurface& reference, StageClock& clock) {
-    RateSearch search(images, parameters, options, reference, clock);
+                          const Contest& contest, const ReferenceSurface& reference, StageClock& clock) {
+    RateSearch search(images, parameters, options, contest, reference, clock);
     return search.run(first_quantizer(options.rate, options.bits));
 }
 

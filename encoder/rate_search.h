@@ -12,6 +12,13 @@
 
 namespace gim {
 
+// Other sides of the square that code to the same target. A search that is sure to lose against them ends early, with an
+// error.
+struct Contest {
+    double rival_bytes = 0;         // of a file that meets the target; 0: none yet
+    bool is_finer_to_come = false;  // a larger side follows, so it is no use to go on where the samples are too few
+};
+
 // Codes the images at the quantizer that options.rate asks for:
 //   lossless  keeps the quantized images exactly
 //   quality   does not search
@@ -23,7 +30,7 @@ namespace gim {
 // planes and text. Cost: up to about 16 files, or 32 for bytes and error if nothing is fitted; each fitted, decoded and
 // compared. Constants: code/rate_target.h.
 Result<std::vector<uint8_t>> search_rate(LayoutImages& images, const CodingParameters& parameters,
-                                         const EncodeOptions& options, const ReferenceSurface& reference,
-                                         StageClock& clock);
+                                         const EncodeOptions& options, const Contest& contest,
+                                         const ReferenceSurface& reference, StageClock& clock);
 
 }  // namespace gim

@@ -12,8 +12,6 @@ namespace gim {
 
 namespace {
 
-constexpr int kRepairPasses = 4;
-
 std::vector<CodedPart> parts_of(const ChartLevels& charts) {
     std::vector<CodedPart> parts;
     for (size_t c = 0; c < charts.charts.size(); ++c) {
@@ -48,7 +46,7 @@ class ChartsLayout final : public LayoutImages {
         CodingParameters with_repair = parameters;
         if (repair_) {
             with_repair.repair = [this](size_t, std::span<Pyramid<int32_t>> bands, const Units& units) {
-                repair_->repair(bands, units, kRepairPasses);
+                repair_->repair(bands, units, kLastRepair);
             };
         }
         return charts_writer(charts_, with_repair);

@@ -105,8 +105,7 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     const GridGluing& gluing = image.gluing;
     const FitFrame frame(input);
     const FitReference reference(Mesh{frame.into(input.positions), input.triangles});
-    const Fitter untouched(start, reference, gluing, frame, options);
-    const FitQuality before = untouched.quality();
+    const FitQuality before = Fitter(start, reference, gluing, frame, options).quality();
     const Schedule schedule = schedule_of(options);
 
     // An image without folds stays so from the first round on. Folds stay if unfolding them costs accuracy.
@@ -122,7 +121,7 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     result.positions = start;
     FitQuality after = before;
     for (size_t k = 0; k < plans.size(); ++k) {
-        Fitter fitter = untouched;
+        Fitter fitter(start, reference, gluing, frame, options);
         run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
         result.rounds += schedule.rounds;
         FitQuality reached = fitter.quality();

@@ -53,6 +53,8 @@ Schedule schedule_of(CodedFit::Effort effort) {
             return {1, {0, 0}};
         case CodedFit::Effort::kAdjust:
             return {0, kLast};
+        case CodedFit::Effort::kPatient:
+            return {6, kLast};
         case CodedFit::Effort::kFinal:
             break;
     }
@@ -62,8 +64,7 @@ Schedule schedule_of(CodedFit::Effort effort) {
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
-constexpr double kDensity = 1.5;                   // samples of the reference per face
-constexpr int kHeldRepairs = 2, kLastRepairs = 6;  // most passes
+constexpr double kDensity = 1.5;  // samples of the reference per face
 constexpr int kMostSteps = 40;
 constexpr double kTolerance = 1e-4;
 
@@ -247,9 +248,9 @@ struct CodedFit::Impl {
     }
 
     // Moves samples to where a decoder would put them.
-    void quantize(const Units& units, int repairs) {
+    void quantize(const Units& units, bool repairs) {
         Pyramid<int32_t> bands = quantized(units);
-        repair.repair({&bands, 1}, units, repairs);
+        if (repairs) repair.repair({&bands, 1}, units, kRepairBetween);
         fitter.place(repair.decode({&bands, 1}, units));
     }
 
@@ -275,7 +276,7 @@ CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mes
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
 void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
-    impl_->repair.repair({&bands, 1}, units, kLastRepairs);
+    impl_->repair.repair({&bands, 1}, units, kLastRepair);
 }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
@@ -285,14 +286,14 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
-            if (free == Free::kNormals) impl_->quantize(units, effort == Effort::kSearch ? 0 : kHeldRepairs);
+            if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
             if (free == Free::kAll) impl_->fitter.unfold();
             impl_->round(units, free);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
     for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle);
-    if (effort == Effort::kFinal) impl_->keep_as_cycled();
+    if (schedule.cycles > 0 && effort != Effort::kSearch) impl_->keep_as_cycled();
     rounds(schedule.last);
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));

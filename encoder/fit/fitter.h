@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -89,7 +90,7 @@ class Fitter {
     // Finds area and normal at the samples, over the whole fan of a class.
     void find_vertex_frames(const ImageSurface& image);
 
-    std::vector<Pull> pulls_from_reference(const ImageSurface& image, double density, uint64_t seed) const;
+    std::vector<Pull> pulls_from_reference(const ImageSurface& image, double density, uint64_t seed);
 
     // Takes at least one sample in every face, so that each face learns which way the reference looks there.
     std::vector<Pull> pulls_from_image(const ImageSurface& image, double density, uint64_t seed);
@@ -130,6 +131,10 @@ class Fitter {
     std::vector<Vec3> vertex_normal_;
     double mean_area_ = 0;
     std::vector<uint32_t> nearest_reference_face_, face_hint_;
+
+    // Kept from round to round for its shape, which decides the time alone.
+    std::optional<ClosestPointTree> image_tree_;
+    size_t image_tree_faces_ = 0;
 };
 
 // Measures how far an image is from the reference, by fresh samples, and its folds at the centres of its faces. front:

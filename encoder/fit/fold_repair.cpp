@@ -18,13 +18,16 @@ namespace {
 
 // Cosine below which a face counts as folded. At creases a good face may stand across the nearest one.
 constexpr double kSteep = 0.03;
-constexpr double kFold = 20;  // bits that a folded face is worth at least
-constexpr double kTurn = 10;  // bits for each unit of the cosine below that
 // A bit lowers the squared distance, in squared steps, by the inverse of this at high rates (fit_coded.cpp).
 constexpr double kBitsPerDistance = 8.7;
 constexpr double kLeastGain = 4;       // bits
 constexpr double kMostSlope = 2;       // of a detail's response at depth 1, between neighbours; generous
-constexpr uint32_t kDeepest = 3;       // depth of the coarsest details that are changed
+constexpr uint32_t kDeepest = 3;       // depth of the coarsest details that are changed without decoding again
+constexpr uint32_t kDeepestTried = 5;  // depth of the coarsest details that are tried
+constexpr uint32_t kCluster = 3;       // reach of a cluster of folded cells
+constexpr size_t kFewest = 2;          // folded cells of a cluster that is worth a coarser detail
+constexpr size_t kTrials = 8;          // changes tried for a cluster
+constexpr double kStill = 1e-8;        // squared shift, in squared steps, of a sample that does not move
 constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
 
 // A detail of a part.
@@ -52,9 +55,11 @@ struct Reach {
 
 class FoldPass {
   public:
-    FoldPass(FoldRepair& repair, std::span<Pyramid<int32_t>> bands, const Units& units)
+    FoldPass(FoldRepair& repair, std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort)
         : r_(repair),
           bands_(bands),
+          effort_(effort),
+          units_(units),
           coding_(detail_coding_of(units)),
           unit_(double{units.step} * repair.frame_.scale),
           prices_(bands),
@@ -64,11 +69,10 @@ class FoldPass {
           cell_stamp_(repair.gluing_.kind.size(), 0),
           margin_(repair.gluing_.kind.size(), 0) {
         for (size_t p = 0; p < r_.parts_.size(); ++p) {
-            images_.push_back(decode_bands(bands[p], coding_, r_.parts_[p].seams));
             rims_.emplace_back();
             copies_.emplace_back();
             const uint32_t steps = bands[p].steps();
-            for (uint32_t depth = 1; depth <= std::min(kDeepest, steps); ++depth) {
+            for (uint32_t depth = 1; depth <= std::min(kDeepestTried, steps); ++depth) {
                 rims_.back().emplace_back(r_.parts_[p].seams, bands[p].columns_at(steps - depth + 1));
                 copies_.back().emplace_back();
                 const SharedRim rim = rims_.back().back().view();
@@ -78,22 +82,54 @@ class FoldPass {
                 });
             }
         }
-        x_ = r_.decode(bands, units);
+        images_ = r_.images(bands_, units_);
+        x_ = r_.samples(images_, units_);
         find_owners();
     }
 
-    // Returns the number of changes.
+    // Changes fine details. Returns the number of changes.
     size_t run() {
+        size_t changes = 0;
+        for (const uint32_t cell : steep_cells()) {
+            if (r_.is_stuck_[cell] || cost_of_cell(cell) == 0) continue;
+            const std::vector<Change> best = best_changes(cell, 1, kDeepest, 1);
+            r_.is_stuck_[cell] = best.empty();
+            if (best.empty()) continue;
+            apply(best[0]);
+            ++changes;
+        }
+        return changes;
+    }
+
+    // Tries coarser details where several neighbours are folded. Decodes for each trial, because the frames of finer
+    // details turn with a coarser one. Returns the number of changes.
+    size_t run_coarse() {
         const std::vector<uint32_t> cells = steep_cells();
+        std::vector<uint8_t> is_done(r_.gluing_.kind.size(), 0), is_steep(is_done.size(), 0);
+        for (const uint32_t cell : cells) is_steep[cell] = 1;
         size_t changes = 0;
         for (const uint32_t cell : cells) {
-            if (cost_of_cell(cell) == 0) continue;
-            if (const auto best = best_change(cell)) apply(*best), ++changes;
+            if (is_done[cell] || cost_of_cell(cell) == 0) continue;
+            size_t folded = 0;
+            for_each_cell_near(cell, kCluster, [&](uint32_t other) { folded += is_steep[other]; });
+            if (folded < kFewest) continue;
+            for_each_cell_near(cell, 2 * kCluster, [&](uint32_t other) { is_done[other] = 1; });
+            const std::vector<Change> best = best_changes(cell, kDeepest + 1, kDeepestTried, kTrials);
+            changes += std::any_of(best.begin(), best.end(), [&](const Change& c) { return apply_if_it_pays(c); });
         }
         return changes;
     }
 
   private:
+    template <class Body>
+    void for_each_cell_near(uint32_t cell, uint32_t reach, const Body& body) const {
+        const uint32_t columns = r_.gluing_.width - 1, row = cell / columns, column = cell % columns;
+        for (uint32_t r = row - std::min(row, reach); r <= std::min(row + reach, r_.gluing_.height - 2); ++r) {
+            for (uint32_t c = column - std::min(column, reach); c <= std::min(column + reach, columns - 1); ++c)
+                body(r * columns + c);
+        }
+    }
+
     // Which part each sample belongs to.
     void find_owners() {
         owner_.assign(x_.size(), 0);
@@ -179,7 +215,7 @@ class FoldPass {
             const uint32_t face = r_.nearest_[slot] != kNone ? r_.nearest_[slot] : r_.nearest_[slot ^ 1];
             if (face == kNone) continue;
             const double c = normal_of(faces[half]).dot(r_.reference_.normals[face]);
-            if (c < kSteep) cost += kFold + kTurn * (kSteep - c);
+            if (c < kSteep) cost += effort_.fold + effort_.turn * (kSteep - c);
         }
         return cost;
     }
@@ -251,17 +287,12 @@ class FoldPass {
         spread_over_classes();
         // Neighbours move against each other by so much at most.
         const double most = kMostSlope * unit_ * double{tangential_step_at(p)} / (1u << (p.depth - 1));
-        const uint32_t width = r_.gluing_.width;
         for (const auto& [v, weight] : reach.samples) {
-            const uint32_t row = v / width, column = v % width;
-            for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, r_.gluing_.height - 2); ++r) {
-                for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c) {
-                    const uint32_t cell = r * (width - 1) + c;
-                    if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) continue;
-                    cell_stamp_[cell] = stamp_;
-                    if (margin_[cell] <= most) reach.cells.push_back(cell);
-                }
-            }
+            for_each_cell_at(v, [&](uint32_t cell) {
+                if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
+                cell_stamp_[cell] = stamp_;
+                if (margin_[cell] <= most) reach.cells.push_back(cell);
+            });
         }
     }
 
@@ -310,13 +341,14 @@ class FoldPass {
         }
     }
 
-    std::optional<Change> best_change(uint32_t cell) {
+    // Returns the best changes of details of these depths, best first. Each is the best of its detail.
+    std::vector<Change> best_changes(uint32_t cell, uint32_t from_depth, uint32_t to_depth, size_t most) {
         const uint32_t width = r_.gluing_.width;
         const uint32_t part = owner_[owned_corner(cell)];
         const double row = cell / (width - 1) + 0.5 - r_.parts_[part].row;
         const double column = cell % (width - 1) + 0.5 - r_.parts_[part].column;
-        std::optional<Change> best;
-        for (uint32_t depth = 1; depth <= rims_[part].size(); ++depth) {
+        std::vector<Change> best;
+        for (uint32_t depth = from_depth; depth <= std::min<size_t>(to_depth, rims_[part].size()); ++depth) {
             for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
                 Place place{part, depth, orientation, 0, 0};
                 const double size = 1u << depth, reach = depth == 1 ? 1.3 : 1.0;
@@ -330,13 +362,20 @@ class FoldPass {
                 };
                 for (place.row = first(middle_row); place.row <= last(middle_row, band_rows(place)); ++place.row) {
                     for (place.column = first(middle_column); place.column <= last(middle_column, band_columns(place));
-                         ++place.column)
-                        try_place(source_of(place), best);
+                         ++place.column) {
+                        const double limit = best.size() == most ? best.back().cost : -kLeastGain;
+                        if (const auto change = best_of_detail(source_of(place), limit)) insert(best, *change, most);
+                    }
                 }
             }
         }
-        if (best && best->cost > -kLeastGain) return {};
         return best;
+    }
+
+    static void insert(std::vector<Change>& best, const Change& change, size_t most) {
+        const auto at = std::find_if(best.begin(), best.end(), [&](const Change& c) { return change.cost < c.cost; });
+        best.insert(at, change);
+        if (best.size() > most) best.pop_back();
     }
 
     uint32_t owned_corner(uint32_t cell) const {
@@ -346,11 +385,13 @@ class FoldPass {
         return 0;
     }
 
-    void try_place(const Place& p, std::optional<Change>& best) {
+    // Returns the detail's best change if it costs less than `limit`.
+    std::optional<Change> best_of_detail(const Place& p, double limit) {
+        std::optional<Change> best;
         find_reach(p);
         double before = 0;
         for (const uint32_t cell : reach_.cells) before += cost_of_cell(cell);
-        if (before < kLeastGain) return;
+        if (before < kLeastGain) return best;
         const uint32_t e = bands_[p.part].steps() - p.depth + 1;
         const DetailSteps steps = coding_.steps_at(p.depth);
         const FrameField field(images_[p.part][e - 1].data(), low_count(bands_[p.part].columns_at(e)),
@@ -365,7 +406,6 @@ class FoldPass {
                 Change change{p, k, by, Vec3::Zero(), 0};
                 const double length = unit_ * double{dequantize(now + by, step[k]) - dequantize(now, step[k])};
                 for (int i = 0; i < 3; ++i) change.shift[i] = length * double{frame.axis[k][i]};
-                const double limit = best ? best->cost : -kLeastGain;
                 change.cost = prices_.bits_of_change(integers, p.row, p.column, k, by) - before;
                 if (change.cost > limit) continue;
                 change.cost += cost_of_distance(reach_, change.shift);
@@ -373,8 +413,73 @@ class FoldPass {
                 move(reach_, change.shift);
                 for (const uint32_t cell : reach_.cells) change.cost += cost_of_cell(cell);
                 move(reach_, -change.shift);
-                if (change.cost < limit) best = change;
+                if (change.cost < limit) {
+                    limit = change.cost;
+                    best = change;
+                }
             }
+        }
+        return best;
+    }
+
+    // Makes the change and decodes again. Takes it back if it does not pay. Returns whether it stays.
+    bool apply_if_it_pays(const Change& change) {
+        const Place& p = change.place;
+        int32_t& integer = band(p).row(p.row)[3 * p.column + change.component];
+        const double bits = prices_.bits_of_change(band(p), p.row, p.column, change.component, change.by);
+        integer += change.by;
+        auto images = r_.images(bands_, units_);
+        std::vector<Vec3> x = r_.samples(images, units_);
+        std::vector<uint32_t> moved;
+        if (bits + cost_of_move(x, moved) >= -kLeastGain) {
+            integer -= change.by;
+            return false;
+        }
+        images_ = std::move(images);
+        x_ = std::move(x);
+        std::fill(sample_off_.begin(), sample_off_.end(), kNone);
+        offs_.clear();
+        for (const uint32_t cell : moved) r_.is_stuck_[cell] = 0;
+        return true;
+    }
+
+    // What it costs, in distance and folds, to move the samples to x. Adds the cells that move.
+    double cost_of_move(std::vector<Vec3>& x, std::vector<uint32_t>& cells) {
+        const double step = unit_ * double{coding_.quantizer};
+        double sum = 0;
+        ++stamp_;
+        for (uint32_t v = 0; v < x.size(); ++v) {
+            const Vec3 shift = x[v] - x_[v];
+            if (!(shift.squaredNorm() > kStill * step * step) || !r_.gluing_.is_defined(v)) continue;
+            const Off& off = off_of(v);
+            const double by = shift.dot(off.normal);
+            sum += by * (2 * off.distance + by);
+            for_each_cell_at(v, [&](uint32_t cell) {
+                if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
+                cell_stamp_[cell] = stamp_;
+                cells.push_back(cell);
+            });
+        }
+        double cost = kBitsPerDistance * sum / (step * step);
+        for (const uint32_t cell : cells) cost -= cost_of_cell(cell);
+        x_.swap(x);
+        for (const uint32_t cell : cells) {
+            const auto faces = split_cell(x_, r_.gluing_, cell);
+            for (uint32_t half = 0; half < 2; ++half) {
+                if (faces[half] != kNoFace) cosine(2 * cell + half, faces[half]);
+            }
+            cost += cost_of_cell(cell);
+        }
+        x_.swap(x);
+        return cost;
+    }
+
+    template <class Body>
+    void for_each_cell_at(uint32_t v, const Body& body) const {
+        const uint32_t width = r_.gluing_.width, row = v / width, column = v % width;
+        for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, r_.gluing_.height - 2); ++r) {
+            for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c)
+                body(r * (width - 1) + c);
         }
     }
 
@@ -383,11 +488,16 @@ class FoldPass {
         band(p).row(p.row)[3 * p.column + change.component] += change.by;
         find_reach(p);
         move(reach_, change.shift);
-        for (const auto& [v, weight] : reach_.samples) sample_off_[v] = kNone;
+        for (const auto& [v, weight] : reach_.samples) {
+            sample_off_[v] = kNone;
+            for_each_cell_at(v, [&](uint32_t cell) { r_.is_stuck_[cell] = 0; });
+        }
     }
 
     FoldRepair& r_;
     std::span<Pyramid<int32_t>> bands_;
+    RepairEffort effort_;
+    Units units_;
     DetailCoding coding_;
     double unit_;  // length of a unit in the frame
     CoefficientPrices prices_;
@@ -412,7 +522,8 @@ FoldRepair::FoldRepair(const GridGluing& gluing, const FitReference& reference, 
       front_(front),
       parts_(std::move(parts)),
       close_(std::move(close)),
-      nearest_(2 * gluing.kind.size(), kNone) {
+      nearest_(2 * gluing.kind.size(), kNone),
+      is_stuck_(gluing.kind.size(), 0) {
     for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
 }
 
@@ -424,15 +535,28 @@ FoldRepair::FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector
       front_(front_side(frame_.into(image.positions), gluing_, reference_)),
       parts_(std::move(parts)),
       close_(std::move(close)),
-      nearest_(2 * gluing_.kind.size(), kNone) {
+      nearest_(2 * gluing_.kind.size(), kNone),
+      is_stuck_(gluing_.kind.size(), 0) {
     for (const CodedPart& part : parts_) responses_.emplace_back(part.columns, part.rows, part.seams != nullptr);
 }
 
+std::vector<FoldRepair::LevelImages> FoldRepair::images(std::span<const Pyramid<int32_t>> bands,
+                                                        const Units& units) const {
+    std::vector<LevelImages> images;
+    for (size_t p = 0; p < parts_.size(); ++p)
+        images.push_back(decode_bands(bands[p], detail_coding_of(units), parts_[p].seams));
+    return images;
+}
+
 std::vector<Vec3> FoldRepair::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
+    return samples(images(bands, units), units);
+}
+
+std::vector<Vec3> FoldRepair::samples(const std::vector<LevelImages>& images, const Units& units) const {
     std::vector<float> image(3 * gluing_.sample_count());
     for (size_t p = 0; p < parts_.size(); ++p) {
         const CodedPart& part = parts_[p];
-        const std::vector<float> box = decode_bands(bands[p], detail_coding_of(units), part.seams).back();
+        const std::vector<float>& box = images[p].back();
         for (uint32_t row = 0, i = 0; row < part.rows; ++row) {
             for (uint32_t column = 0; column < part.columns; ++column, ++i) {
                 if (!part.defined.empty() && !part.defined[i]) continue;
@@ -450,11 +574,13 @@ std::vector<Vec3> FoldRepair::decode(std::span<const Pyramid<int32_t>> bands, co
     return frame_.into(positions);
 }
 
-void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes) {
+void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort) {
     // What an earlier call found must not change the result.
     std::fill(nearest_.begin(), nearest_.end(), kNone);
-    for (int pass = 0; pass < passes; ++pass) {
-        if (FoldPass(*this, bands, units).run() == 0) break;
+    std::fill(is_stuck_.begin(), is_stuck_.end(), uint8_t{0});
+    for (int pass = 0; pass < effort.passes; ++pass) {
+        const size_t coarse = pass == effort.passes / 2 ? FoldPass(*this, bands, units, effort).run_coarse() : 0;
+        if (coarse + FoldPass(*this, bands, units, effort).run() == 0) break;
     }
 }
 

@@ -6,7 +6,8 @@
 // Thresholding with Complete JPEG/MPEG Decoder Compatibility. 1994.
 //
 // Each pass decodes the image, visits its folded cells in order, and applies the best change at each at once. It
-// assumes that the frames of finer details stay. The next pass sees what the decoder really does.
+// assumes that the frames of finer details stay. The next pass sees what the decoder really does. Where several
+// neighbours are folded, one pass also tries coarser details. It decodes for each of these, since frames turn with them.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,16 @@ struct CodedPart {
 // Closes the seams of a whole image as the decoder does. image: interleaved triples, in units.
 using CloseSeams = std::function<void(std::vector<float>& image)>;
 
+// What folds are worth, and the most passes.
+struct RepairEffort {
+    int passes;
+    double fold;  // bits that a folded face is worth at least
+    double turn;  // bits for each unit of its cosine
+};
+// The last repair of a file, and those between the rounds of a fit. The latter must be cheap: what they spend on a fold,
+// the next rounds undo. With the last ones' price, files take 3 to 5 % more bytes and have more folds.
+inline constexpr RepairEffort kLastRepair = {6, 15, 10}, kRepairBetween = {2, 2, 5};
+
 class FoldRepair {
   public:
     // Keeps references to gluing and reference. front: the sign that makes the image face outwards.
@@ -46,15 +57,20 @@ class FoldRepair {
     // The same for an image by itself. Keeps a reference to its gluing. mesh: its surface; copied.
     FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector<CodedPart> parts, CloseSeams close);
 
-    // bands: of each part; lossy. Makes at most `passes` passes. Deterministic at any number of threads.
+    // bands: of each part; lossy. Makes at most effort.passes passes. Deterministic at any number of threads.
     // Cost: a decoding for each pass, and about a millisecond for each folded cell.
-    void repair(std::span<Pyramid<int32_t>> bands, const Units& units, int passes);
+    void repair(std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort);
 
     // Returns the decoded samples with closed seams, in the frame.
     std::vector<Vec3> decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const;
 
   private:
     friend class FoldPass;
+
+    // The images of a part at all levels, coarsest first, in units around the middle.
+    using LevelImages = std::vector<std::vector<float>>;
+    std::vector<LevelImages> images(std::span<const Pyramid<int32_t>> bands, const Units& units) const;
+    std::vector<Vec3> samples(const std::vector<LevelImages>& images, const Units& units) const;
 
     const GridGluing& gluing_;
     FitFrame frame_;
@@ -65,6 +81,7 @@ class FoldRepair {
     CloseSeams close_;
     std::vector<DetailResponses> responses_;  // per part
     std::vector<uint32_t> nearest_;           // per slot: a face of the reference that was near
+    std::vector<uint8_t> is_stuck_;           // per cell: no change pays, and nothing near it has changed since
 };
 
 }  // namespace gim

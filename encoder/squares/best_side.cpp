@@ -33,19 +33,22 @@ bool may_halve(const EncodeOptions& options) {
 
 Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& whole, const StageClock& clock,
                               const Observer& observer) {
-    if (!may_halve(whole)) return run(whole, observer);
+    if (!may_halve(whole)) return run(whole, {}, observer);
     const auto improves = [&](const Result<Encoded>& now, const Result<Encoded>& best) {
         return now.ok() && (!best.ok() || is_better(now.value(), best.value(), whole.rate));
     };
     EncodeOptions options = halved(whole);
-    auto best = run(options, observer);
-    auto of_whole = run(whole, {});
+    const auto contest_with = [&](const Result<Encoded>& best) {
+        return Contest{best.ok() ? double(best.value().bytes.size()) : 0, false};
+    };
+    auto best = run(options, {0, true}, observer);
+    auto of_whole = run(whole, contest_with(best), {});
     if (!best.ok() || improves(of_whole, best)) {
         best = std::move(of_whole);
     } else {
         while (options.side >= RateSearchValues::kLeastSideToHalve) {
             options = halved(options);
-            auto half = run(options, {});
+            auto half = run(options, contest_with(best), {});
             if (!improves(half, best)) break;
             best = std::move(half);
         }

@@ -198,6 +198,61 @@ struct ClosestPointTree::Impl {
         return box;
     }
 
+    // Chooses the frame of the floats.
+    void frame(const Mesh& mesh) {
+        Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
+        for (const Triangle& t : mesh.triangles) {
+            for (const uint32_t v : t) {
+                low = low.cwiseMin(mesh.positions[v]);
+                high = high.cwiseMax(mesh.positions[v]);
+            }
+        }
+        middle = 0.5 * low + 0.5 * high;
+        const double extent = (high - low).maxCoeff();
+        // A power of two, so that scaling rounds nothing.
+        scale = extent > 0 && std::isfinite(extent) ? std::ldexp(1.0, -std::clamp(std::ilogb(extent), -1000, 1000)) : 1;
+    }
+
+    Box box_of_leaf(uint32_t first, uint32_t count) const {
+        Box box = box_of(corners[first]);
+        for (uint32_t i = 1; i < count; ++i) box.add(box_of(corners[first + i]));
+        return box;
+    }
+
+    Box box_of_node(const Node& node) const {
+        Box box;
+        for (uint32_t k = 0; k < node.used; ++k) {
+            for (int axis = 0; axis < 3; ++axis) {
+                box.low[axis] = std::min(box.low[axis], node.low[axis][k]);
+                box.high[axis] = std::max(box.high[axis], node.high[axis][k]);
+            }
+        }
+        return box;
+    }
+
+    // Makes all boxes anew from the corners.
+    void fit_boxes(uint32_t threads) {
+        const auto set = [](Node& node, uint32_t k, const Box& box) {
+            for (int axis = 0; axis < 3; ++axis) {
+                node.low[axis][k] = box.low[axis];
+                node.high[axis][k] = box.high[axis];
+            }
+        };
+        parallel_blocks(nodes.size(), 1024, threads, [&](size_t, size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                for (uint32_t k = 0; k < nodes[i].used; ++k) {
+                    if (nodes[i].count[k] > 0) set(nodes[i], k, box_of_leaf(nodes[i].first[k], nodes[i].count[k]));
+                }
+            }
+        });
+        // A node's children come after it.
+        for (size_t i = nodes.size(); i-- > 0;) {
+            for (uint32_t k = 0; k < nodes[i].used; ++k) {
+                if (nodes[i].count[k] == 0) set(nodes[i], k, box_of_node(nodes[nodes[i].first[k]]));
+            }
+        }
+    }
+
     // Opens the largest of up to four ranges until the node is full, then does the same below. Returns the node's
     // index.
     uint32_t collapse(const std::vector<BoxSplit>& splits, const Range& whole) {
@@ -241,17 +296,7 @@ ClosestPointTree::ClosestPointTree(const Mesh& mesh, uint32_t threads) : impl_(s
     const auto count = static_cast<uint32_t>(mesh.triangles.size());
     if (count == 0) return;
     Impl& tree = *impl_;
-    Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
-    for (const Triangle& t : mesh.triangles) {
-        for (const uint32_t v : t) {
-            low = low.cwiseMin(mesh.positions[v]);
-            high = high.cwiseMax(mesh.positions[v]);
-        }
-    }
-    tree.middle = 0.5 * low + 0.5 * high;
-    const double extent = (high - low).maxCoeff();
-    // A power of two, so that scaling rounds nothing.
-    if (extent > 0 && std::isfinite(extent)) tree.scale = std::ldexp(1.0, -std::clamp(std::ilogb(extent), -1000, 1000));
+    tree.frame(mesh);
 
     std::vector<BoxItem> items(count);
     parallel_blocks(count, 16384, threads, [&](size_t, size_t begin, size_t end) {
@@ -367,6 +412,19 @@ ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
 }
 
 }  // namespace
+
+void ClosestPointTree::refit(const Mesh& mesh, uint32_t threads) {
+    Impl& tree = *impl_;
+    if (tree.nodes.empty()) return;
+    tree.frame(mesh);
+    parallel_blocks(tree.corners.size(), 16384, threads, [&](size_t, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Triangle& t = mesh.triangles[tree.triangle[i]];
+            tree.corners[i] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+        }
+    });
+    tree.fit_boxes(threads);
+}
 
 ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {
     if (impl_->nodes.empty()) return {};

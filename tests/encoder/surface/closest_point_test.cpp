@@ -120,6 +120,43 @@ TEST(ClosestPointTree, HintsAndThreadsChangeNothing) {
     }
 }
 
+void expect_same(const ClosestPoint& a, const ClosestPoint& b) {
+    EXPECT_EQ(a.triangle, b.triangle);
+    EXPECT_EQ(a.point, b.point);
+    EXPECT_EQ(a.squared_distance, b.squared_distance);
+}
+
+TEST(ClosestPointTree, ARefittedTreeAnswersAsANewOne) {
+    const Mesh old = random_soup(500, 5);
+    // Another place for every triangle, another size for the whole, and everything in one point.
+    Mesh elsewhere = random_soup(500, 6), larger = old, point = old;
+    for (Vec3& p : larger.positions) p = 100 * p + Vec3(7, 0, -3);
+    for (Vec3& p : point.positions) p = Vec3(1, 2, 3);
+    std::mt19937_64 engine(7);
+    for (const Mesh& now : {elsewhere, larger, point, old}) {
+        ClosestPointTree refitted(old);
+        refitted.refit(now, 2);
+        const ClosestPointTree fresh(now);
+        for (int k = 0; k < 200; ++k) {
+            const Vec3 query = 3 * point_in_cube(engine);
+            expect_same(refitted.find(query), fresh.find(query));
+        }
+    }
+}
+
+TEST(ClosestPointTree, ATreeMayBeRefittedAgainAndAgain) {
+    const Mesh first = random_soup(300, 8);
+    ClosestPointTree tree(first);
+    for (uint64_t seed = 9; seed < 13; ++seed) tree.refit(random_soup(300, seed));
+    tree.refit(first);
+    const ClosestPointTree fresh(first);
+    std::mt19937_64 engine(10);
+    for (int k = 0; k < 200; ++k) {
+        const Vec3 query = point_in_cube(engine);
+        expect_same(tree.find(query), fresh.find(query));
+    }
+}
+
 TEST(ClosestPointTree, EquallyNearTrianglesGiveTheSmallestIndex) {
     // A fan around the origin, listed twice and in an order that differs from the tree's.
     Mesh mesh;
@@ -162,6 +199,9 @@ TEST(ClosestPointTree, QueriesFarAwayFindTheirPointAndOpenFewBoxes) {
 }
 
 TEST(ClosestPointTree, AnEmptyMeshHasNoClosestPoint) {
+    ClosestPointTree empty{Mesh{}};
+    empty.refit(Mesh{});
+    EXPECT_EQ(empty.find(Vec3(1, 2, 3)).triangle, kNone);
     EXPECT_EQ(ClosestPointTree(Mesh{}).find({0, 0, 0}).triangle, kNone);
 }
 
