@@ -3,8 +3,8 @@
 
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
+#include "encoder/code/contest.h"
 #include "encoder/layout/layout_images.h"
-#include "encoder/rate_search.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 

@@ -169,7 +169,7 @@ class RateSearch {
         const bool is_far =
             finally_fitted_to_ == 0 || std::abs(std::log2(quantizer / finally_fitted_to_)) > Values::kNear;
         if (is_far) finally_fitted_to_ = quantizer;
-        return fitted_file(quantizer, is_far ? CodedFit::Effort::kPatient : CodedFit::Effort::kAdjust);
+        return fitted_file(quantizer, is_far ? CodedFit::Effort::kFinal : CodedFit::Effort::kAdjust);
     }
 
     double slack_in_octaves() const {

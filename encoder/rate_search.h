@@ -6,18 +6,12 @@
 
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
+#include "encoder/code/contest.h"
 #include "encoder/layout/layout_images.h"
 #include "encoder/surface/compare_meshes.h"
 #include "gim/encoder.h"
 
 namespace gim {
-
-// Other sides of the square that code to the same target. A search that is sure to lose against them ends early, with an
-// error.
-struct Contest {
-    double rival_bytes = 0;         // of a file that meets the target; 0: none yet
-    bool is_finer_to_come = false;  // a larger side follows, so it is no use to go on where the samples are too few
-};
 
 // Codes the images at the quantizer that options.rate asks for:
 //   lossless  keeps the quantized images exactly

@@ -53,12 +53,10 @@ Schedule schedule_of(CodedFit::Effort effort) {
             return {1, {0, 0}};
         case CodedFit::Effort::kAdjust:
             return {0, kLast};
-        case CodedFit::Effort::kPatient:
-            return {6, kLast};
         case CodedFit::Effort::kFinal:
             break;
     }
-    return {3, kLast};
+    return {4, kLast};
 }
 
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
@@ -293,7 +291,7 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
     for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle);
-    if (schedule.cycles > 0 && effort != Effort::kSearch) impl_->keep_as_cycled();
+    if (effort == Effort::kFinal) impl_->keep_as_cycled();
     rounds(schedule.last);
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));

@@ -31,14 +31,13 @@ class CodedFit {
     CodedFit& operator=(CodedFit&&) noexcept;
 
     enum class Effort {
-        kSearch,   // quick: shows roughly what a quantizer gives
-        kFinal,    // full: gives the samples of a file
-        kPatient,  // the same in twice the time; its files are about 3 % smaller
-        kAdjust,   // repeats the last rounds of the last kFinal or kPatient, at a quantizer nearby
+        kSearch,  // quick: shows roughly what a quantizer gives
+        kFinal,   // full: gives the samples of a file
+        kAdjust,  // repeats the last rounds of the last kFinal, at a quantizer nearby
     };
     // Continues from the end of the last call; the first call begins at the start. units: of the file to come. Returns
     // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
-    // number of threads. Cost: 5, 24, 39 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
+    // number of threads. Cost: 5, 29 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
     // Repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
     void repair(Pyramid<int32_t>& bands, const Units& units);

@@ -10,6 +10,7 @@
 #include "encoder/base/parallel.h"
 #include "encoder/code/code_bands.h"
 #include "encoder/code/coefficient_prices.h"
+#include "encoder/fit/detail_reach.h"
 #include "encoder/fit/image_surface.h"
 
 namespace gim {
@@ -30,25 +31,20 @@ constexpr size_t kTrials = 8;          // changes tried for a cluster
 constexpr double kStill = 1e-8;        // squared shift, in squared steps, of a sample that does not move
 constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
 
-// A detail of a part.
-struct Place {
-    uint32_t part, depth;
-    Orientation orientation;
-    uint32_t row, column;
-};
-
 struct Change {
-    Place place;
+    PlaceInPart place;
     uint32_t component = 0;
     int32_t by = 0;
     Vec3 shift = Vec3::Zero();  // of a sample of weight 1, in the frame
     double cost = 0;            // bits
 };
 
-// The samples that a detail moves, and the cells at them.
-struct Reach {
-    std::vector<std::pair<uint32_t, float>> samples;  // with their weights
-    std::vector<uint32_t> cells;
+// How much farther from the reference the samples get, in bits, if those of weight 1 shift by s: s b + s A s.
+struct DistanceCost {
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    Vec3 b = Vec3::Zero();
+
+    double of(const Vec3& shift) const { return shift.dot(b + a * shift); }
 };
 
 }  // namespace
@@ -63,28 +59,11 @@ class FoldPass {
           coding_(detail_coding_of(units)),
           unit_(double{units.step} * repair.frame_.scale),
           prices_(bands),
+          reaches_(repair.gluing_, repair.parts_, repair.responses_, bands, kDeepestTried),
           sample_off_(repair.gluing_.sample_count(), kNone),
-          sample_stamp_(repair.gluing_.sample_count(), 0),
-          sample_slot_(repair.gluing_.sample_count(), 0),
-          cell_stamp_(repair.gluing_.kind.size(), 0),
           margin_(repair.gluing_.kind.size(), 0) {
-        for (size_t p = 0; p < r_.parts_.size(); ++p) {
-            rims_.emplace_back();
-            copies_.emplace_back();
-            const uint32_t steps = bands[p].steps();
-            for (uint32_t depth = 1; depth <= std::min(kDeepestTried, steps); ++depth) {
-                rims_.back().emplace_back(r_.parts_[p].seams, bands[p].columns_at(steps - depth + 1));
-                copies_.back().emplace_back();
-                const SharedRim rim = rims_.back().back().view();
-                rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
-                    copies_.back().back().push_back(
-                        {rim.source_of(orientation, row, column), {orientation, row, column}});
-                });
-            }
-        }
         images_ = r_.images(bands_, units_);
         x_ = r_.samples(images_, units_);
-        find_owners();
     }
 
     // Changes fine details. Returns the number of changes.
@@ -128,29 +107,6 @@ class FoldPass {
             for (uint32_t c = column - std::min(column, reach); c <= std::min(column + reach, columns - 1); ++c)
                 body(r * columns + c);
         }
-    }
-
-    // Which part each sample belongs to.
-    void find_owners() {
-        owner_.assign(x_.size(), 0);
-        if (r_.parts_.size() == 1) return;
-        for (uint32_t p = 0; p < r_.parts_.size(); ++p) {
-            const CodedPart& part = r_.parts_[p];
-            for (uint32_t row = 0; row < part.rows; ++row) {
-                for (uint32_t column = 0; column < part.columns; ++column) {
-                    const uint32_t v = sample_at(part, row, column);
-                    if (v != kNone) owner_[v] = p;
-                }
-            }
-        }
-    }
-
-    // Returns the sample of the image; kNone if it is not defined.
-    uint32_t sample_at(const CodedPart& part, uint32_t row, uint32_t column) const {
-        if (part.defined.empty()) return row * r_.gluing_.width + column;
-        if (!part.defined[size_t{row} * part.columns + column]) return kNone;
-        return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * r_.gluing_.width +
-               static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
     }
 
     Vec3 normal_of(const Triangle& t) const {
@@ -235,122 +191,67 @@ class FoldPass {
         return offs_[sample_off_[v]];
     }
 
-    // How much farther from the reference the samples get, in bits.
-    double cost_of_distance(const Reach& reach, const Vec3& shift) {
-        const double step = unit_ * double{coding_.quantizer};
-        double sum = 0;
+    // The reference counts as flat around a sample until the pass ends.
+    void shift_off(uint32_t v, const Vec3& shift) {
+        if (sample_off_[v] == kNone) return;
+        Off& off = offs_[sample_off_[v]];
+        off.distance += shift.dot(off.normal);
+    }
+
+    DistanceCost distance_cost(const DetailReach& reach) {
+        const double step = unit_ * double{coding_.quantizer}, scale = kBitsPerDistance / (step * step);
+        DistanceCost cost;
         for (const auto& [v, weight] : reach.samples) {
             const Off& off = off_of(v);
-            const double by = double{weight} * shift.dot(off.normal);
-            sum += by * (2 * off.distance + by);
+            const Vec3 normal = double{weight} * off.normal;
+            cost.a.noalias() += normal * normal.transpose();
+            cost.b += 2 * off.distance * normal;
         }
-        return kBitsPerDistance * sum / (step * step);
+        cost.a *= scale;
+        cost.b *= scale;
+        return cost;
     }
 
-    void move(const Reach& reach, const Vec3& shift) {
-        for (const auto& [v, weight] : reach.samples) x_[v] += double{weight} * shift;
+    void move(const std::vector<std::pair<uint32_t, float>>& samples, const Vec3& shift) {
+        for (const auto& [v, weight] : samples) x_[v] += double{weight} * shift;
     }
 
-    uint32_t band_rows(const Place& p) const {
+    uint32_t band_rows(const PlaceInPart& p) const {
         const Pyramid<int32_t>& pyramid = bands_[p.part];
         const uint32_t rows = pyramid.rows_at(pyramid.steps() - p.depth + 1);
         return p.orientation == Orientation::kHorizontal ? low_count(rows) : high_count(rows);
     }
-    uint32_t band_columns(const Place& p) const {
+    uint32_t band_columns(const PlaceInPart& p) const {
         const Pyramid<int32_t>& pyramid = bands_[p.part];
         const uint32_t columns = pyramid.columns_at(pyramid.steps() - p.depth + 1);
         return p.orientation == Orientation::kVertical ? low_count(columns) : high_count(columns);
     }
-    Band band(const Place& p) {
+    Band band(const PlaceInPart& p) {
         const Pyramid<int32_t>& pyramid = bands_[p.part];
         return bands_of(bands_[p.part], pyramid.steps() - p.depth).of(p.orientation);
     }
 
-    // Returns the place whose integers count.
-    Place source_of(const Place& p) const {
-        const SharedRim rim = rims_[p.part][p.depth - 1].view();
-        if (!rim.is_copy(p.orientation, p.row, p.column)) return p;
-        const DetailPlace from = rim.source_of(p.orientation, p.row, p.column);
-        return {p.part, p.depth, from.orientation, from.row, from.column};
-    }
-
-    void find_reach(const Place& p) {
-        Reach& reach = reach_;
-        reach.samples.clear();
-        reach.cells.clear();
-        ++stamp_;
-        add_block(p.part, r_.responses_[p.part].at(p.depth, p.orientation, p.row, p.column));
-        for (const auto& [source, copy] : copies_[p.part][p.depth - 1]) {
-            if (source.orientation == p.orientation && source.row == p.row && source.column == p.column)
-                add_block(p.part, r_.responses_[p.part].at(p.depth, copy.orientation, copy.row, copy.column));
-        }
-        spread_over_classes();
+    const DetailReach& reach_of(const PlaceInPart& p) {
         // Neighbours move against each other by so much at most.
         const double most = kMostSlope * unit_ * double{tangential_step_at(p)} / (1u << (p.depth - 1));
-        for (const auto& [v, weight] : reach.samples) {
-            for_each_cell_at(v, [&](uint32_t cell) {
-                if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
-                cell_stamp_[cell] = stamp_;
-                if (margin_[cell] <= most) reach.cells.push_back(cell);
-            });
-        }
+        return reaches_.find(p, [&](uint32_t cell) { return margin_[cell] <= most; });
     }
 
-    float tangential_step_at(const Place& p) const {
+    float tangential_step_at(const PlaceInPart& p) const {
         const DetailSteps steps = coding_.steps_at(p.depth);
         return steps.of(p.orientation) * std::max(1.0f, steps.tangential);
-    }
-
-    void add_sample(uint32_t v, float weight) {
-        if (sample_stamp_[v] != stamp_) {
-            sample_stamp_[v] = stamp_;
-            sample_slot_[v] = static_cast<uint32_t>(reach_.samples.size());
-            reach_.samples.push_back({v, 0.0f});
-        }
-        reach_.samples[sample_slot_[v]].second += weight;
-    }
-
-    void add_block(uint32_t p, const ResponseBlock& block) {
-        const CodedPart& part = r_.parts_[p];
-        const float* weight = block.weights;
-        for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
-            for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
-                const uint32_t v = sample_at(part, row, column);
-                if (v != kNone) add_sample(v, *weight);
-            }
-        }
-    }
-
-    // Glued samples move by the mean over their class.
-    void spread_over_classes() {
-        const size_t count = reach_.samples.size();
-        std::vector<uint32_t> classes;
-        for (size_t i = 0; i < count; ++i) {
-            const uint32_t c = r_.gluing_.class_of[reach_.samples[i].first];
-            if (c != kNone) classes.push_back(c);
-        }
-        std::sort(classes.begin(), classes.end());
-        classes.erase(std::unique(classes.begin(), classes.end()), classes.end());
-        for (const uint32_t c : classes) {
-            const auto& members = r_.gluing_.shared[c];
-            for (const uint32_t v : members) add_sample(v, 0);
-            float sum = 0;
-            for (const uint32_t v : members) sum += reach_.samples[sample_slot_[v]].second;
-            for (const uint32_t v : members)
-                reach_.samples[sample_slot_[v]].second = sum / static_cast<float>(members.size());
-        }
     }
 
     // Returns the best changes of details of these depths, best first. Each is the best of its detail.
     std::vector<Change> best_changes(uint32_t cell, uint32_t from_depth, uint32_t to_depth, size_t most) {
         const uint32_t width = r_.gluing_.width;
-        const uint32_t part = owner_[owned_corner(cell)];
+        const uint32_t part = reaches_.part_of(cell);
         const double row = cell / (width - 1) + 0.5 - r_.parts_[part].row;
         const double column = cell % (width - 1) + 0.5 - r_.parts_[part].column;
         std::vector<Change> best;
-        for (uint32_t depth = from_depth; depth <= std::min<size_t>(to_depth, rims_[part].size()); ++depth) {
+        for (uint32_t depth = from_depth; depth <= std::min<size_t>(to_depth, bands_[part].steps()); ++depth) {
             for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
-                Place place{part, depth, orientation, 0, 0};
+                PlaceInPart place{part, depth, orientation, 0, 0};
                 const double size = 1u << depth, reach = depth == 1 ? 1.3 : 1.0;
                 const double middle_row = row / size - (orientation == Orientation::kHorizontal ? 0 : 0.5);
                 const double middle_column = column / size - (orientation == Orientation::kVertical ? 0 : 0.5);
@@ -364,7 +265,8 @@ class FoldPass {
                     for (place.column = first(middle_column); place.column <= last(middle_column, band_columns(place));
                          ++place.column) {
                         const double limit = best.size() == most ? best.back().cost : -kLeastGain;
-                        if (const auto change = best_of_detail(source_of(place), limit)) insert(best, *change, most);
+                        if (const auto change = best_of_detail(reaches_.source_of(place), limit))
+                            insert(best, *change, most);
                     }
                 }
             }
@@ -378,19 +280,12 @@ class FoldPass {
         if (best.size() > most) best.pop_back();
     }
 
-    uint32_t owned_corner(uint32_t cell) const {
-        for (const uint32_t v : r_.gluing_.corners(cell)) {
-            if (r_.gluing_.is_defined(v)) return v;
-        }
-        return 0;
-    }
-
     // Returns the detail's best change if it costs less than `limit`.
-    std::optional<Change> best_of_detail(const Place& p, double limit) {
+    std::optional<Change> best_of_detail(const PlaceInPart& p, double limit) {
         std::optional<Change> best;
-        find_reach(p);
+        const DetailReach& reach = reach_of(p);
         double before = 0;
-        for (const uint32_t cell : reach_.cells) before += cost_of_cell(cell);
+        for (const uint32_t cell : reach.cells) before += cost_of_cell(cell);
         if (before < kLeastGain) return best;
         const uint32_t e = bands_[p.part].steps() - p.depth + 1;
         const DetailSteps steps = coding_.steps_at(p.depth);
@@ -400,6 +295,7 @@ class FoldPass {
         float step[3];
         steps_in(frame, steps, p.orientation, step);
         const Band integers = band(p);
+        std::optional<DistanceCost> distance;
         for (uint32_t k = 0; k < 3; ++k) {
             const int32_t now = integers.row(p.row)[3 * p.column + k];
             for (const int32_t by : {-1, 1}) {
@@ -408,11 +304,12 @@ class FoldPass {
                 for (int i = 0; i < 3; ++i) change.shift[i] = length * double{frame.axis[k][i]};
                 change.cost = prices_.bits_of_change(integers, p.row, p.column, k, by) - before;
                 if (change.cost > limit) continue;
-                change.cost += cost_of_distance(reach_, change.shift);
+                if (!distance) distance = distance_cost(reach);
+                change.cost += distance->of(change.shift);
                 if (change.cost > limit) continue;
-                move(reach_, change.shift);
-                for (const uint32_t cell : reach_.cells) change.cost += cost_of_cell(cell);
-                move(reach_, -change.shift);
+                move(reach.corners, change.shift);
+                for (const uint32_t cell : reach.cells) change.cost += cost_of_cell(cell);
+                move(reach.corners, -change.shift);
                 if (change.cost < limit) {
                     limit = change.cost;
                     best = change;
@@ -424,7 +321,7 @@ class FoldPass {
 
     // Makes the change and decodes again. Takes it back if it does not pay. Returns whether it stays.
     bool apply_if_it_pays(const Change& change) {
-        const Place& p = change.place;
+        const PlaceInPart& p = change.place;
         int32_t& integer = band(p).row(p.row)[3 * p.column + change.component];
         const double bits = prices_.bits_of_change(band(p), p.row, p.column, change.component, change.by);
         integer += change.by;
@@ -435,10 +332,9 @@ class FoldPass {
             integer -= change.by;
             return false;
         }
+        for (uint32_t v = 0; v < x.size(); ++v) shift_off(v, x[v] - x_[v]);
         images_ = std::move(images);
         x_ = std::move(x);
-        std::fill(sample_off_.begin(), sample_off_.end(), kNone);
-        offs_.clear();
         for (const uint32_t cell : moved) r_.is_stuck_[cell] = 0;
         return true;
     }
@@ -447,16 +343,16 @@ class FoldPass {
     double cost_of_move(std::vector<Vec3>& x, std::vector<uint32_t>& cells) {
         const double step = unit_ * double{coding_.quantizer};
         double sum = 0;
-        ++stamp_;
+        std::vector<uint8_t> is_known(r_.gluing_.kind.size(), 0);
         for (uint32_t v = 0; v < x.size(); ++v) {
             const Vec3 shift = x[v] - x_[v];
             if (!(shift.squaredNorm() > kStill * step * step) || !r_.gluing_.is_defined(v)) continue;
             const Off& off = off_of(v);
             const double by = shift.dot(off.normal);
             sum += by * (2 * off.distance + by);
-            for_each_cell_at(v, [&](uint32_t cell) {
-                if (cell_stamp_[cell] == stamp_ || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
-                cell_stamp_[cell] = stamp_;
+            for_each_cell_at(r_.gluing_, v, [&](uint32_t cell) {
+                if (is_known[cell] || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
+                is_known[cell] = 1;
                 cells.push_back(cell);
             });
         }
@@ -474,23 +370,14 @@ class FoldPass {
         return cost;
     }
 
-    template <class Body>
-    void for_each_cell_at(uint32_t v, const Body& body) const {
-        const uint32_t width = r_.gluing_.width, row = v / width, column = v % width;
-        for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, r_.gluing_.height - 2); ++r) {
-            for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c)
-                body(r * (width - 1) + c);
-        }
-    }
-
     void apply(const Change& change) {
-        const Place& p = change.place;
+        const PlaceInPart& p = change.place;
         band(p).row(p.row)[3 * p.column + change.component] += change.by;
-        find_reach(p);
-        move(reach_, change.shift);
-        for (const auto& [v, weight] : reach_.samples) {
-            sample_off_[v] = kNone;
-            for_each_cell_at(v, [&](uint32_t cell) { r_.is_stuck_[cell] = 0; });
+        const DetailReach& reach = reach_of(p);
+        move(reach.samples, change.shift);
+        for (const auto& [v, weight] : reach.samples) {
+            shift_off(v, double{weight} * change.shift);
+            for_each_cell_at(r_.gluing_, v, [&](uint32_t cell) { r_.is_stuck_[cell] = 0; });
         }
     }
 
@@ -501,16 +388,12 @@ class FoldPass {
     DetailCoding coding_;
     double unit_;  // length of a unit in the frame
     CoefficientPrices prices_;
+    DetailReaches reaches_;
     std::vector<std::vector<std::vector<float>>> images_;  // per part
     std::vector<Vec3> x_;
-    std::vector<uint32_t> owner_, sample_off_;
+    std::vector<uint32_t> sample_off_;
     std::vector<Off> offs_;
     uint32_t last_face_ = kNone;
-    std::vector<std::vector<OwnSharedRim>> rims_;  // per part and depth
-    std::vector<std::vector<std::vector<std::pair<DetailPlace, DetailPlace>>>> copies_;
-    Reach reach_;
-    uint32_t stamp_ = 0;
-    std::vector<uint32_t> sample_stamp_, sample_slot_, cell_stamp_;
     std::vector<double> margin_;  // per cell
 };
 

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "encoder/code/detail_response.h"
 #include "encoder/code/wavelet_analysis.h"
+#include "encoder/fit/detail_reach.h"
 #include "encoder/fit/fitter.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/image/gluing.h"
@@ -26,14 +26,6 @@
 #include "format/seam.h"
 
 namespace gim {
-
-// A part of an image that is coded by itself: all of a square, or the box of a chart.
-struct CodedPart {
-    uint32_t columns = 0, rows = 0;
-    int32_t column = 0, row = 0;       // of its first sample, in the image; a box may begin outside
-    const SeamTable* seams = nullptr;  // of a square whose mates share their details
-    std::vector<uint8_t> defined;      // per sample; empty: all are
-};
 
 // Closes the seams of a whole image as the decoder does. image: interleaved triples, in units.
 using CloseSeams = std::function<void(std::vector<float>& image)>;
@@ -46,7 +38,7 @@ struct RepairEffort {
 };
 // The last repair of a file, and those between the rounds of a fit. The latter must be cheap: what they spend on a fold,
 // the next rounds undo. With the last ones' price, files take 3 to 5 % more bytes and have more folds.
-inline constexpr RepairEffort kLastRepair = {6, 15, 10}, kRepairBetween = {2, 2, 5};
+inline constexpr RepairEffort kLastRepair = {6, 15, 10}, kRepairBetween = {1, 2, 5};
 
 class FoldRepair {
   public:

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "encoder/base/stage_clock.h"
-#include "encoder/rate_search.h"
+#include "encoder/code/contest.h"
 #include "gim/encoder.h"
 
 namespace gim {
