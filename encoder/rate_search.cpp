@@ -57,7 +57,8 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
         GIM_TRY(psnr, judge(bytes));
         best_psnr = std::max(best_psnr, psnr);
         if (psnr >= target) {
-            best = std::move(bytes);
+            // A repair of folds is a leap. So the coarsest file need not be the smallest.
+            if (best.empty() || bytes.size() < best.size()) best = std::move(bytes);
             fine = at, fine_psnr = psnr;
             if (psnr <= target + Values::kPsnrSlack || at >= Values::kCoarsest) break;
         } else {

@@ -151,8 +151,8 @@ TEST(Encode, LossyFilesKeepTheTopologyToo) {
 TEST(Encode, PsnrTargetIsMetAndNotByMuch) {
     EncodeOptions options = small_options();
     const TriangleMesh mesh = corpus::torus(60, 30, 1, 0.4);
-    for (const double target :
-         {45.0, 60.0}) {  // at 40 and 50 dB, 256 and 359 bytes, single coefficients are worth 0.4 dB
+    // Below, a single coefficient, or a fold that is repaired, is worth more than 0.3 dB.
+    for (const double target : {55.0, 60.0}) {
         options.rate = {RateTarget::Kind::kPsnr, target};
         const auto encoded = encode(mesh, options);
         ASSERT_TRUE(encoded.ok()) << encoded.error().message;
