@@ -28,6 +28,7 @@ constexpr uint32_t kDeepestTried = 5;  // depth of the coarsest details that are
 constexpr uint32_t kCluster = 3;       // reach of a cluster of folded cells
 constexpr size_t kFewest = 2;          // folded cells of a cluster that is worth a coarser detail
 constexpr size_t kTrials = 8;          // changes tried for a cluster
+constexpr double kMostFolded = 0.1;    // part of the cells; where more are folded, the image is lost anyway
 constexpr double kStill = 1e-8;        // squared shift, in squared steps, of a sample that does not move
 constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
 
@@ -69,7 +70,9 @@ class FoldPass {
     // Changes fine details. Returns the number of changes.
     size_t run() {
         size_t changes = 0;
-        for (const uint32_t cell : steep_cells()) {
+        const std::vector<uint32_t> cells = steep_cells();
+        if (are_too_many(cells)) return 0;
+        for (const uint32_t cell : cells) {
             if (r_.is_stuck_[cell] || cost_of_cell(cell) == 0) continue;
             const std::vector<Change> best = best_changes(cell, 1, kDeepest, 1);
             r_.is_stuck_[cell] = best.empty();
@@ -84,6 +87,7 @@ class FoldPass {
     // details turn with a coarser one. Returns the number of changes.
     size_t run_coarse() {
         const std::vector<uint32_t> cells = steep_cells();
+        if (are_too_many(cells)) return 0;
         std::vector<uint8_t> is_done(r_.gluing_.kind.size(), 0), is_steep(is_done.size(), 0);
         for (const uint32_t cell : cells) is_steep[cell] = 1;
         size_t changes = 0;
@@ -100,6 +104,10 @@ class FoldPass {
     }
 
   private:
+    bool are_too_many(const std::vector<uint32_t>& cells) const {
+        return static_cast<double>(cells.size()) > kMostFolded * static_cast<double>(r_.gluing_.kind.size());
+    }
+
     template <class Body>
     void for_each_cell_near(uint32_t cell, uint32_t reach, const Body& body) const {
         const uint32_t columns = r_.gluing_.width - 1, row = cell / columns, column = cell % columns;
