@@ -10,9 +10,8 @@
 
 namespace gim {
 
-// Codes images to the target of the options. contest: other sides of the square, or
-// none. Compares the decoded surface with `reference`. `input`: the mesh as read,
-// which has the colours. Returns the file with the completed report.
+// Codes images to the target of the options. Compares the decoded surface with `reference`. `input`: the mesh as read,
+// which has the colours. contest: the other sides of the square, if any. Returns the file with the completed report.
 Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
                              const EncodeOptions& options, const Contest& contest, StageClock& clock,
                              EncodeReport report);

@@ -21,8 +21,8 @@ namespace gim {
 //             names the distance in reach
 //   bytes     returns the best file found of at most `value` bytes; an Error names the smallest size in reach
 // Images that are fitted to their quantizer are fitted again for each quantizer; they keep the last fit. parameters:
-// planes and text. Cost: up to about 16 files, or 32 for bytes and error if nothing is fitted; each fitted, decoded and
-// compared. Constants: code/rate_target.h.
+// planes and text. contest: a search that is sure to lose returns an Error instead. Cost: up to about 16 files, or 32 for
+// bytes and error if nothing is fitted; each fitted, decoded and compared. Constants: code/rate_target.h.
 Result<std::vector<uint8_t>> search_rate(LayoutImages& images, const CodingParameters& parameters,
                                          const EncodeOptions& options, const Contest& contest,
                                          const ReferenceSurface& reference, StageClock& clock);

@@ -1,6 +1,14 @@
 #include "encoder/fit/detail_reach.h"
 
+#include <algorithm>
+
 namespace gim {
+
+uint32_t sample_of_part(const CodedPart& part, uint32_t width, uint32_t row, uint32_t column) {
+    if (!part.defined.empty() && !part.defined[size_t{row} * part.columns + column]) return kNone;
+    return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * width +
+           static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
+}
 
 DetailReaches::DetailReaches(const GridGluing& gluing, const std::vector<CodedPart>& parts,
                              std::vector<DetailResponses>& responses, std::span<const Pyramid<int32_t>> bands,
@@ -33,7 +41,7 @@ void DetailReaches::find_owners() {
         const CodedPart& part = parts_[p];
         for (uint32_t row = 0; row < part.rows; ++row) {
             for (uint32_t column = 0; column < part.columns; ++column) {
-                const uint32_t v = sample_at(part, row, column);
+                const uint32_t v = sample_of_part(part, gluing_.width, row, column);
                 if (v != kNone) owner_[v] = p;
             }
         }
@@ -54,7 +62,7 @@ uint32_t DetailReaches::part_of(uint32_t cell) const {
     return 0;
 }
 
-const DetailReach& DetailReaches::find(const PlaceInPart& place, const std::function<bool(uint32_t cell)>& counts) {
+const DetailReach& DetailReaches::find(const PlaceInPart& place, std::span<const double> margin, double most) {
     reach_.samples.clear();
     reach_.cells.clear();
     reach_.corners.clear();
@@ -71,7 +79,7 @@ const DetailReach& DetailReaches::find(const PlaceInPart& place, const std::func
         for_each_cell_at(gluing_, v, [&](uint32_t cell) {
             if (cell_stamp_[cell] == stamp_ || gluing_.kind[cell] == CellKind::kEmpty) return;
             cell_stamp_[cell] = stamp_;
-            if (counts(cell)) reach_.cells.push_back(cell);
+            if (margin[cell] <= most) reach_.cells.push_back(cell);
         });
     }
     for (const uint32_t cell : reach_.cells) {
@@ -82,14 +90,6 @@ const DetailReach& DetailReaches::find(const PlaceInPart& place, const std::func
         }
     }
     return reach_;
-}
-
-// Returns the sample of the image; kNone if it is not defined.
-uint32_t DetailReaches::sample_at(const CodedPart& part, uint32_t row, uint32_t column) const {
-    if (part.defined.empty()) return row * gluing_.width + column;
-    if (!part.defined[size_t{row} * part.columns + column]) return kNone;
-    return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * gluing_.width +
-           static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
 }
 
 void DetailReaches::add_sample(uint32_t v, float weight) {
@@ -105,7 +105,7 @@ void DetailReaches::add_block(const CodedPart& part, const ResponseBlock& block)
     const float* weight = block.weights;
     for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
         for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
-            const uint32_t v = sample_at(part, row, column);
+            const uint32_t v = sample_of_part(part, gluing_.width, row, column);
             if (v != kNone) add_sample(v, *weight);
         }
     }

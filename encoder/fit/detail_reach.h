@@ -1,9 +1,7 @@
 // Which samples and cells of an image change when one wavelet detail of a part of it changes.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +20,9 @@ struct CodedPart {
     const SeamTable* seams = nullptr;  // of a square whose mates share their details
     std::vector<uint8_t> defined;      // per sample; empty: all are
 };
+
+// Returns the sample of an image of this width that a part's sample is; kNone if it is not defined.
+uint32_t sample_of_part(const CodedPart& part, uint32_t width, uint32_t row, uint32_t column);
 
 // A detail of a part.
 struct PlaceInPart {
@@ -51,9 +52,10 @@ class DetailReaches {
     // Returns the part that the cell's samples belong to.
     uint32_t part_of(uint32_t cell) const;
 
-    // Returns what the detail moves, together with its copies, after samples at one surface point went to their mean.
-    // counts: tells which cells are wanted. The reference holds until the next call. O(samples that move).
-    const DetailReach& find(const PlaceInPart& place, const std::function<bool(uint32_t cell)>& counts);
+    // Returns what the detail moves, together with its copies, after samples at one surface point went to their mean. The
+    // cells that count are those whose margin is at most `most`. margin: per cell. The reference holds until the next
+    // call. O(samples that move).
+    const DetailReach& find(const PlaceInPart& place, std::span<const double> margin, double most);
 
   private:
     struct Copy {
@@ -65,7 +67,6 @@ class DetailReaches {
     };
 
     void find_owners();
-    uint32_t sample_at(const CodedPart& part, uint32_t row, uint32_t column) const;
     void add_sample(uint32_t v, float weight);
     void add_block(const CodedPart& part, const ResponseBlock& block);
     void spread_over_classes();
@@ -80,14 +81,5 @@ class DetailReaches {
     uint32_t stamp_ = 0;
     std::vector<uint32_t> sample_stamp_, sample_slot_, corner_stamp_, cell_stamp_;
 };
-
-// Calls body(cell) for the up to four cells at a sample, row by row.
-template <class Body>
-void for_each_cell_at(const GridGluing& gluing, uint32_t sample, const Body& body) {
-    const uint32_t width = gluing.width, row = sample / width, column = sample % width;
-    for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, gluing.height - 2); ++r) {
-        for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c) body(r * (width - 1) + c);
-    }
-}
 
 }  // namespace gim

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -133,8 +132,7 @@ class Fitter {
     std::vector<uint32_t> nearest_reference_face_, face_hint_;
 
     // Kept from round to round for its shape, which decides the time alone.
-    std::optional<ClosestPointTree> image_tree_;
-    size_t image_tree_faces_ = 0;
+    ClosestPointTree image_tree_{Mesh{}};
 };
 
 // Measures how far an image is from the reference, by fresh samples, and its folds at the centres of its faces. front:

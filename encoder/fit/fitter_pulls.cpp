@@ -90,13 +90,8 @@ void Fitter::find_vertex_frames(const ImageSurface& image) {
 std::vector<Pull> Fitter::pulls_from_reference(const ImageSurface& image, double density, uint64_t seed) {
     const auto count = static_cast<uint32_t>(density * static_cast<double>(image.areas.size()));
     const SurfaceSamples samples = sample_by_area(reference_.mesh, count, seed);
-    if (image_tree_ && image_tree_faces_ == image.mesh.triangles.size()) {
-        image_tree_->refit(image.mesh);
-    } else {
-        image_tree_.emplace(image.mesh);
-        image_tree_faces_ = image.mesh.triangles.size();
-    }
-    const std::vector<ClosestPoint> found = image_tree_->find_all(samples.points);
+    image_tree_.refit(image.mesh);
+    const std::vector<ClosestPoint> found = image_tree_.find_all(samples.points);
     std::vector<Pull> pulls(samples.points.size());
     parallel_blocks(pulls.size(), 4096, 0, [&](size_t, size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {

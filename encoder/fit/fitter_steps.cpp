@@ -69,15 +69,8 @@ void Fitter::take_step(const std::vector<Vec3>& step, bool guarded) {
 }
 
 std::vector<uint32_t> Fitter::cells_around(const std::vector<uint32_t>& samples) const {
-    const uint32_t width = gluing_.width, last_row = gluing_.height - 2, last_column = width - 2;
     std::vector<uint32_t> cells;
-    for (const uint32_t v : samples) {
-        const uint32_t row = v / width, column = v % width;
-        for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, last_row); ++r) {
-            for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, last_column); ++c)
-                cells.push_back(r * (width - 1) + c);
-        }
-    }
+    for (const uint32_t v : samples) for_each_cell_at(gluing_, v, [&](uint32_t cell) { cells.push_back(cell); });
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return cells;

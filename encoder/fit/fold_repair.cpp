@@ -220,7 +220,7 @@ class FoldPass {
         return cost;
     }
 
-    void move(const std::vector<std::pair<uint32_t, float>>& samples, const Vec3& shift) {
+    void move(const DetailReach::Samples& samples, const Vec3& shift) {
         for (const auto& [v, weight] : samples) x_[v] += double{weight} * shift;
     }
 
@@ -242,7 +242,7 @@ class FoldPass {
     const DetailReach& reach_of(const PlaceInPart& p) {
         // Neighbours move against each other by so much at most.
         const double most = kMostSlope * unit_ * double{tangential_step_at(p)} / (1u << (p.depth - 1));
-        return reaches_.find(p, [&](uint32_t cell) { return margin_[cell] <= most; });
+        return reaches_.find(p, margin_, most);
     }
 
     float tangential_step_at(const PlaceInPart& p) const {
@@ -397,7 +397,7 @@ class FoldPass {
     double unit_;  // length of a unit in the frame
     CoefficientPrices prices_;
     DetailReaches reaches_;
-    std::vector<std::vector<std::vector<float>>> images_;  // per part
+    std::vector<FoldRepair::LevelImages> images_;  // per part
     std::vector<Vec3> x_;
     std::vector<uint32_t> sample_off_;
     std::vector<Off> offs_;
@@ -450,10 +450,10 @@ std::vector<Vec3> FoldRepair::samples(const std::vector<LevelImages>& images, co
         const std::vector<float>& box = images[p].back();
         for (uint32_t row = 0, i = 0; row < part.rows; ++row) {
             for (uint32_t column = 0; column < part.columns; ++column, ++i) {
-                if (!part.defined.empty() && !part.defined[i]) continue;
-                const auto to = static_cast<size_t>((part.row + int64_t{row}) * gluing_.width + part.column + column);
+                const uint32_t to = sample_of_part(part, gluing_.width, row, column);
+                if (to == kNone) continue;
                 for (size_t k = 0; k < 3; ++k)
-                    image[3 * to + k] = box[3 * size_t{i} + k] + static_cast<float>(1 << (units.bits - 1));
+                    image[3 * size_t{to} + k] = box[3 * size_t{i} + k] + static_cast<float>(1 << (units.bits - 1));
             }
         }
     }

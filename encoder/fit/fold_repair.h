@@ -50,7 +50,8 @@ class FoldRepair {
     FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector<CodedPart> parts, CloseSeams close);
 
     // bands: of each part; lossy. Makes at most effort.passes passes. Deterministic at any number of threads.
-    // Cost: a decoding for each pass, and about a millisecond for each folded cell.
+    // Leaves an image alone where a tenth of its cells is folded. Cost: a decoding for each pass and each coarse trial,
+    // and about a millisecond for each folded cell.
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort);
 
     // Returns the decoded samples with closed seams, in the frame.

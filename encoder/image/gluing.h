@@ -2,6 +2,7 @@
 // and which triangles each cell has. Cells are split as the decoder splits them. All layouts share this model.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -76,5 +77,14 @@ struct GridFaces {
     std::vector<uint32_t> slot;  // per triangle: 2 * cell, or 2 * cell + 1
 };
 GridFaces triangulate_grid(const std::vector<Vec3>& positions, const GridGluing& gluing);
+
+// Calls body(cell) for the up to four cells at a sample, row by row.
+template <class Body>
+void for_each_cell_at(const GridGluing& gluing, uint32_t sample, const Body& body) {
+    const uint32_t width = gluing.width, row = sample / width, column = sample % width;
+    for (uint32_t r = row > 0 ? row - 1 : 0; r <= std::min(row, gluing.height - 2); ++r) {
+        for (uint32_t c = column > 0 ? column - 1 : 0; c <= std::min(column, width - 2); ++c) body(r * (width - 1) + c);
+    }
+}
 
 }  // namespace gim

@@ -15,7 +15,8 @@ using EncodeOnce =
 
 // Codes the side that is asked for. If the options allow smaller sides and the target is coarse, also tries half of the
 // side, and goes on as long as halving makes the file better. Returns the best file. The half runs first, because it
-// chooses the cuts in a quarter of the time. Only the first run shows pictures. The times are those of all runs.
+// chooses the cuts in a quarter of the time. A side that is sure to lose ends early (contest.h). Only the first run shows
+// pictures. The times are those of all runs.
 Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& options, const StageClock& clock,
                               const Observer& observer);
 

@@ -230,8 +230,14 @@ struct ClosestPointTree::Impl {
         return box;
     }
 
-    // Makes all boxes anew from the corners.
-    void fit_boxes(uint32_t threads) {
+    // Takes the corners of a mesh of these triangles and makes all boxes from them. The frame must be that of the mesh.
+    void place(const Mesh& mesh, uint32_t threads) {
+        parallel_blocks(corners.size(), 16384, threads, [&](size_t, size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const Triangle& t = mesh.triangles[triangle[i]];
+                corners[i] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+            }
+        });
         const auto set = [](Node& node, uint32_t k, const Box& box) {
             for (int axis = 0; axis < 3; ++axis) {
                 node.low[axis][k] = box.low[axis];
@@ -273,15 +279,10 @@ struct ClosestPointTree::Impl {
         }
         const auto index = static_cast<uint32_t>(nodes.size());
         nodes.emplace_back().used = static_cast<uint8_t>(used);
-        for (uint32_t k = 0; k < kWidth; ++k) {
-            const bool empty = k >= used;
-            for (int axis = 0; axis < 3; ++axis) {
-                nodes[index].low[axis][k] = empty ? 0 : children[k].box.low[axis];
-                nodes[index].high[axis][k] = empty ? 0 : children[k].box.high[axis];
-            }
-            const bool leaf = !empty && children[k].split == kNone;
-            nodes[index].count[k] = leaf ? static_cast<uint8_t>(children[k].end - children[k].begin) : uint8_t{0};
-            nodes[index].first[k] = leaf ? children[k].begin : 0;
+        for (uint32_t k = 0; k < used; ++k) {
+            if (children[k].split != kNone) continue;
+            nodes[index].count[k] = static_cast<uint8_t>(children[k].end - children[k].begin);
+            nodes[index].first[k] = children[k].begin;
         }
         for (uint32_t k = 0; k < used; ++k) {
             if (children[k].split == kNone) continue;
@@ -315,13 +316,12 @@ ClosestPointTree::ClosestPointTree(const Mesh& mesh, uint32_t threads) : impl_(s
     tree.triangle.resize(count);
     tree.position.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
-        const Triangle& t = mesh.triangles[items[i].triangle];
-        tree.corners[i] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
         tree.triangle[i] = items[i].triangle;
         tree.position[items[i].triangle] = i;
     }
     tree.nodes.reserve(count / 2 + 1);
     tree.collapse(splits, {bounds(items, 0, count), 0, count, top});
+    tree.place(mesh, threads);
 }
 
 ClosestPointTree::~ClosestPointTree() = default;
@@ -415,15 +415,13 @@ ClosestPoint find_in(const Tree& tree, const Vec3& query, uint32_t hint) {
 
 void ClosestPointTree::refit(const Mesh& mesh, uint32_t threads) {
     Impl& tree = *impl_;
+    if (tree.corners.size() != mesh.triangles.size()) {
+        *this = ClosestPointTree(mesh, threads);
+        return;
+    }
     if (tree.nodes.empty()) return;
     tree.frame(mesh);
-    parallel_blocks(tree.corners.size(), 16384, threads, [&](size_t, size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const Triangle& t = mesh.triangles[tree.triangle[i]];
-            tree.corners[i] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-        }
-    });
-    tree.fit_boxes(threads);
+    tree.place(mesh, threads);
 }
 
 ClosestPoint ClosestPointTree::find(const Vec3& query, uint32_t hint) const {

@@ -30,8 +30,8 @@ class ClosestPointTree {
     ClosestPointTree(ClosestPointTree&&) noexcept;
     ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
 
-    // Takes new positions, and corners, of the same number of triangles. Keeps the tree's shape: the results are those of
-    // a new tree, and queries are about as fast while triangles stay near their old places. O(F), a tenth of building.
+    // Becomes the tree of this mesh. Keeps its shape if the number of triangles is the same: the results are those of a
+    // new tree, and queries are about as fast while triangles stay near their old places. O(F), a tenth of building.
     void refit(const Mesh& mesh, uint32_t threads = 0);
 
     // `hint` is a triangle that is probably near (kNone: none). It changes the speed, never the result. A query near

@@ -29,7 +29,8 @@ namespace gim {
 namespace {
 
 constexpr uint32_t kSide = 65;
-constexpr RepairEffort kOnePass = {1, kLastRepair.fold, kLastRepair.turn}, kNoPass = {0, 15, 10};
+constexpr RepairEffort kOnePass = {1, kLastRepair.fold, kLastRepair.turn},
+                       kNoPass = {0, kLastRepair.fold, kLastRepair.turn};
 
 // A square image, the surface that it was made from, and its seams.
 struct Square {
