@@ -336,8 +336,10 @@ class FoldPass {
         auto images = r_.images(bands_, units_);
         std::vector<Vec3> x = r_.samples(images, units_);
         std::vector<uint32_t> moved;
+        const std::vector<uint32_t> nearest_before = r_.nearest_;
         if (bits + cost_of_move(x, moved) >= -kLeastGain) {
             integer -= change.by;
+            r_.nearest_ = nearest_before;
             return false;
         }
         for (uint32_t v = 0; v < x.size(); ++v) shift_off(v, x[v] - x_[v]);
@@ -470,8 +472,10 @@ void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, c
     std::fill(nearest_.begin(), nearest_.end(), kNone);
     std::fill(is_stuck_.begin(), is_stuck_.end(), uint8_t{0});
     for (int pass = 0; pass < effort.passes; ++pass) {
-        const size_t coarse = pass == effort.passes / 2 ? FoldPass(*this, bands, units, effort).run_coarse() : 0;
-        if (coarse + FoldPass(*this, bands, units, effort).run() == 0) break;
+        std::optional<FoldPass> state(std::in_place, *this, bands, units, effort);
+        const size_t coarse = pass == effort.passes / 2 ? state->run_coarse() : 0;
+        if (coarse > 0) state.emplace(*this, bands, units, effort);
+        if (coarse + state->run() == 0) break;
     }
 }
 
