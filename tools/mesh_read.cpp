@@ -61,18 +61,18 @@ std::string_view as_text(std::span<const uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std::string& folder, Textures* textures) {
+Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, ReadContext& context) {
     switch (format) {
         case MeshFormat::kPly:
-            return read_ply(text, textures);
+            return read_ply(text, context);
         case MeshFormat::kObj:
-            return read_obj(text, textures);
+            return read_obj(text, context);
         case MeshFormat::kOff:
-            return read_off(text);
+            return read_off(text, context);
         case MeshFormat::kStl:
-            return read_stl(text);
+            return read_stl(text, context);
         case MeshFormat::kGltf:
-            return read_gltf(text, folder, textures);
+            return read_gltf(text, context);
         case MeshFormat::kUnknown:
             break;
     }
@@ -106,11 +106,15 @@ std::string_view format_name(MeshFormat format) {
 
 bool repeats_vertices(MeshFormat format) { return format == MeshFormat::kStl || format == MeshFormat::kGltf; }
 
-Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder,
-                               Textures* textures) {
+Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, ReadContext& context) {
     const std::string beginning = "not a mesh that gim can read: ";
     if (bytes.empty()) return Error{Stage::kInput, beginning + "the file is empty"};
-    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, folder, textures);
+    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, context);
+    if (context.textures) {
+        std::vector<std::string>& late = context.textures->warnings;
+        context.warnings.insert(context.warnings.end(), late.begin(), late.end());
+        late.clear();
+    }
     if (!mesh.ok()) {
         const std::string as = format == MeshFormat::kUnknown ? "" : "(as " + std::string(format_name(format)) + ") ";
         return Error{mesh.error().stage, beginning + as + mesh.error().message};

@@ -111,6 +111,20 @@ void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const Local
 
 }  // namespace
 
+Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& context) {
+    constexpr uint64_t kVertex = sizeof(std::array<double, 3>);
+    constexpr uint64_t kVertexColor = sizeof(std::array<float, 3>);
+    constexpr uint64_t kCorner = sizeof(int64_t) + sizeof(std::array<uint32_t, 3>);  // a triangle each, at most
+    constexpr uint64_t kCornerColor = sizeof(Appearance{}.corner_colors[0]) + sizeof(Appearance{}.corner_texcoords[0]) +
+                                      sizeof(uint32_t) + sizeof(std::array<float, 2>);
+    const bool colors = context.textures != nullptr;
+    Result<void> fits = context.memory.take(vertices, kVertex + (colors ? kVertexColor : 0),
+                                            "its " + std::to_string(vertices) + " vertices");
+    if (!fits.ok()) return fits;
+    return context.memory.take(corners, kCorner + (colors ? kCornerColor : 0),
+                               "the " + std::to_string(corners) + " corners of its faces");
+}
+
 Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures) {
     const auto vertex_count = static_cast<int64_t>(soup.positions.size());
     if (soup.positions.empty()) return Error{Stage::kInput, "it has no vertices"};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gim/encoder.h"
+#include "tools/read_context.h"
 
 namespace gim {
 
@@ -27,6 +28,9 @@ struct PolygonSoup {
         sizes.push_back(static_cast<uint32_t>(face.size()));
     }
 };
+
+// Counts the memory of that many vertices and corners of faces, of the soup and of the mesh that it becomes.
+Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& context);
 
 // Keeps every vertex and every face in the file's order. Cuts larger faces into triangles inside their outline. Keeps
 // degenerate and repeated triangles, because the encoder cleans them. Fails without vertices or faces. Otherwise an

@@ -300,7 +300,8 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
-Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder, Textures* textures) {
+Result<TriangleMesh> read_gltf(std::string_view text, ReadContext& context) {
+    Textures* const textures = context.textures;
     if (text.size() > UINT32_MAX) return Error{Stage::kInput, "glTF files may have at most 4 GB; convert it to PLY"};
     try {
         tinygltf::TinyGLTF loader;
@@ -313,8 +314,8 @@ Result<TriangleMesh> read_gltf(std::string_view text, const std::string& folder,
         const bool loaded =
             text.starts_with("glTF")
                 ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                              reinterpret_cast<const unsigned char*>(text.data()), size, folder)
-                : loader.LoadASCIIFromString(&model, &error, &warning, text.data(), size, folder);
+                                              reinterpret_cast<const unsigned char*>(text.data()), size, context.folder)
+                : loader.LoadASCIIFromString(&model, &error, &warning, text.data(), size, context.folder);
         if (!loaded) return Error{Stage::kInput, "glTF: " + first_line(error)};
 
         PolygonSoup soup;

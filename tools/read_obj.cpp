@@ -64,7 +64,8 @@ std::array<float, 2> texcoord_of(std::string_view word, const std::vector<std::a
 
 }  // namespace
 
-Result<TriangleMesh> read_obj(std::string_view text, Textures* textures) {
+Result<TriangleMesh> read_obj(std::string_view text, ReadContext& context) {
+    Textures* const textures = context.textures;
     PolygonSoup soup;
     std::vector<std::array<float, 2>> texcoords;
     std::vector<Material> materials;

@@ -31,7 +31,7 @@ bool is_known_keyword(std::string_view word) {
 
 }  // namespace
 
-Result<TriangleMesh> read_off(std::string_view text) {
+Result<TriangleMesh> read_off(std::string_view text, ReadContext& context) {
     TextScanner in(text);
     skip_comments(in);
     const std::string_view keyword = in.word();
@@ -56,6 +56,9 @@ Result<TriangleMesh> read_off(std::string_view text) {
                                         std::to_string(text.size()) + " bytes (is the file cut short?)"};
     }
 
+    const auto vertex_count = static_cast<uint64_t>(counts[0]);
+    const auto face_count = static_cast<uint64_t>(counts[1]);
+    if (Result<void> fits = take_memory(vertex_count, 3 * face_count, context); !fits.ok()) return fits.error();
     PolygonSoup soup;
     soup.positions.resize(static_cast<size_t>(counts[0]));
     for (std::array<double, 3>& position : soup.positions) {

@@ -437,12 +437,12 @@ class Reader {
 
 }  // namespace
 
-Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
+Result<TriangleMesh> read_ply(std::string_view text, ReadContext& context) {
     const Result<Header> parsed = read_header(text);
     if (!parsed.ok()) return parsed.error();
     const Header& header = parsed.value();
     const std::string_view body = text.substr(header.size);
-    Reader reader(header, body, textures);
+    Reader reader(header, body, context.textures);
     for (const Element& element : header.elements) {
         const size_t least = least_size(element, header.encoding);
         if (least == 0) continue;
@@ -451,6 +451,9 @@ Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
                                             std::string(element.name.substr(0, 40)) + "', but the file holds only " +
                                             std::to_string(text.size()) + " bytes (is it cut short?)"};
         }
+        const uint64_t vertices = element.name == "vertex" ? element.count : 0;
+        const uint64_t faces = element.name == "face" ? element.count : 0;
+        if (Result<void> fits = take_memory(vertices, 3 * faces, context); !fits.ok()) return fits.error();
         if (const Result<void> read = reader.read_element(element); !read.ok()) return read.error();
     }
     return std::move(reader).mesh();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr size_t kHeaderSize = 84;  // 80 bytes of anything, then the number of facets
 constexpr size_t kFacetSize = 50;   // normal, three corners, two bytes of anything
+constexpr size_t kBytesPerFacet = 3 * sizeof(TriangleMesh{}.positions[0]) + sizeof(TriangleMesh{}.triangles[0]);
 
 uint64_t claimed_size(std::string_view text) {
     return kHeaderSize + kFacetSize * uint64_t{load_u32(text.data() + kHeaderSize - 4)};
@@ -27,7 +28,7 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower) {
     return true;
 }
 
-Result<TriangleMesh> read_binary(std::string_view text) {
+Result<TriangleMesh> read_binary(std::string_view text, ReadContext& context) {
     if (text.size() < kHeaderSize) return Error{Stage::kInput, "it ends inside the header of a binary STL file"};
     if (claimed_size(text) > text.size()) {
         return Error{Stage::kInput, "it claims " + std::to_string(load_u32(text.data() + kHeaderSize - 4)) +
@@ -36,6 +37,9 @@ Result<TriangleMesh> read_binary(std::string_view text) {
     }
     const size_t facets = load_u32(text.data() + kHeaderSize - 4);
     if (facets == 0) return Error{Stage::kInput, "it has no triangles"};
+    const Result<void> fits =
+        context.memory.take(facets, kBytesPerFacet, "its " + std::to_string(facets) + " triangles");
+    if (!fits.ok()) return fits.error();
     TriangleMesh mesh;
     mesh.positions.reserve(3 * facets);
     mesh.triangles.reserve(facets);
@@ -88,12 +92,12 @@ Result<TriangleMesh> read_ascii(std::string_view text) {
 
 }  // namespace
 
-Result<TriangleMesh> read_stl(std::string_view text) {
+Result<TriangleMesh> read_stl(std::string_view text, ReadContext& context) {
     // Some binary files begin with "solid" too. Their size or their zero bytes tell them apart.
-    if (text.size() >= kHeaderSize && claimed_size(text) == text.size()) return read_binary(text);
+    if (text.size() >= kHeaderSize && claimed_size(text) == text.size()) return read_binary(text, context);
     TextScanner in(text);
     const bool is_text = equals_ignoring_case(in.word(), "solid") && text.find('\0') == std::string_view::npos;
-    return is_text ? read_ascii(text) : read_binary(text);
+    return is_text ? read_ascii(text) : read_binary(text, context);
 }
 
 }  // namespace gim

@@ -30,6 +30,14 @@ uint32_t Textures::load(std::string_view name) {
 }
 
 uint32_t Textures::add(std::span<const uint8_t> file, const std::string& name) {
+    if (memory_) {
+        constexpr uint64_t kBytesPerPixel = 6;  // once unpacked, once as a texture
+        const Result<void> fits = memory_->take(pixels_in_picture(file), kBytesPerPixel, "its pixels");
+        if (!fits.ok()) {
+            warnings.push_back("texture " + name + ": " + fits.error().message + "; it is left out");
+            return kNoTexture;
+        }
+    }
     DecodedPicture picture = decode_picture(file);
     if (picture.rgb.empty()) {
         warnings.push_back("texture " + name + ": not an image that gim can read; it is left out");

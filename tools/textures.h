@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gim/encoder.h"
+#include "tools/memory_budget.h"
 
 namespace gim {
 
@@ -19,6 +20,9 @@ class Textures {
 
     // `folder`: the folder of the mesh file.
     explicit Textures(std::string folder) : folder_(std::move(folder)) {}
+
+    // Pictures whose pixels go over the budget are left out, with a warning.
+    void limit_memory(MemoryBudget* memory) { memory_ = memory; }
 
     // Reads a file beside the mesh, each name once: PNG, JPEG, TGA, BMP and whatever else stb_image reads.
     uint32_t load(std::string_view name);
@@ -38,6 +42,7 @@ class Textures {
     std::string path_of(std::string_view name) const;
 
     std::string folder_;
+    MemoryBudget* memory_ = nullptr;
     std::vector<Known> known_;
 };
 

@@ -33,7 +33,7 @@ void save_png(const std::string& path) {
 }
 
 Input read_colored(const std::string& path) {
-    Result<Input> input = read_input(path, Want::kShapeAndColors);
+    Result<Input> input = read_input(path, {Want::kShapeAndColors});
     EXPECT_TRUE(input.ok()) << input.error().message;
     return input.ok() ? std::move(input.value()) : Input{};
 }
@@ -178,7 +178,8 @@ TEST(Planes, ColorsOfAGlbReadBackAtTheirPlaces) {
     const Result<Bytes> glb = write_surface(SurfaceFormat::kGlb, images);
     ASSERT_TRUE(glb.ok());
     Textures textures("");
-    const Result<TriangleMesh> mesh = read_mesh(glb.value(), MeshFormat::kGltf, "", &textures);
+    ReadContext context{"", &textures};
+    const Result<TriangleMesh> mesh = read_mesh(glb.value(), MeshFormat::kGltf, context);
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_TRUE(textures.warnings.empty());
     const InputColors colors(mesh.value());
@@ -202,7 +203,8 @@ TEST(Planes, PlyAndObjGiveColorsToTheirVertices) {
         const Result<Bytes> bytes = write_surface(output, images);
         ASSERT_TRUE(bytes.ok());
         Textures textures("");
-        const Result<TriangleMesh> mesh = read_mesh(bytes.value(), input, "", &textures);
+        ReadContext context{"", &textures};
+        const Result<TriangleMesh> mesh = read_mesh(bytes.value(), input, context);
         ASSERT_TRUE(mesh.ok());
         ASSERT_EQ(mesh.value().appearance.corner_colors.size(), mesh.value().triangles.size());
         const auto& t = mesh.value().triangles[5];
