@@ -42,6 +42,11 @@ Result<TriangleMesh> read_off(std::string_view text, ReadContext& context);
 Result<TriangleMesh> read_stl(std::string_view text, ReadContext& context);
 Result<TriangleMesh> read_gltf(std::string_view text, ReadContext& context);
 
+// What the content of a file tells about it. `text` may be binary.
+bool is_off_keyword(std::string_view word);       // of any OFF dialect, those that read_off refuses too
+bool is_ascii_stl(std::string_view text);         // its first solid begins as one
+bool is_whole_binary_stl(std::string_view text);  // its size is what its header claims
+
 // Merges vertices at exactly equal positions into the first of them and drops triangles that collapse. So two samples
 // on one quantized point become an edge of length zero, not a hole. Keeps the order. O(V log V).
 TriangleMesh weld_equal_positions(const TriangleMesh& mesh);

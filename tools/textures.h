@@ -28,6 +28,8 @@ class Textures {
     uint32_t load(std::string_view name);
     // Adds the bytes of an image file. The warning uses `name`.
     uint32_t add(std::span<const uint8_t> file, const std::string& name);
+    // True if there is a file of this name beside the mesh.
+    bool exists(std::string_view name) const;
     // Returns the text of another file beside the mesh (an .mtl). If there is none, it is empty, with a warning.
     std::string read_text(std::string_view name);
 
@@ -40,6 +42,7 @@ class Textures {
         uint32_t index;
     };
     std::string path_of(std::string_view name) const;
+    Result<std::vector<uint8_t>> read(std::string_view name) const;
 
     std::string folder_;
     MemoryBudget* memory_ = nullptr;
