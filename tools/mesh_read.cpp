@@ -48,8 +48,10 @@ MeshFormat by_extension(std::string_view extension) {
     return MeshFormat::kUnknown;
 }
 
+// Without the byte order mark of a text. The free header of a binary STL may begin with those bytes, too.
 std::string_view as_text(std::span<const uint8_t> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return is_whole_binary_stl(all) ? all : without_byte_order_mark(all);
 }
 
 Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, ReadContext& context) {
@@ -75,7 +77,7 @@ Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, ReadConte
 }  // namespace
 
 MeshFormat detect_format(std::span<const uint8_t> bytes, std::string_view extension) {
-    const std::string_view text = without_byte_order_mark(as_text(bytes));
+    const std::string_view text = as_text(bytes);
     const MeshFormat content = by_content(text);
     if (content != MeshFormat::kUnknown || !describe_foreign_format(text).empty()) return content;
     return by_extension(extension);
@@ -104,7 +106,7 @@ bool repeats_vertices(MeshFormat format) { return format == MeshFormat::kStl || 
 Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, ReadContext& context) {
     const std::string beginning = "not a mesh that gim can read: ";
     if (bytes.empty()) return Error{Stage::kInput, beginning + "the file is empty"};
-    const std::string_view text = without_byte_order_mark(as_text(bytes));
+    const std::string_view text = as_text(bytes);
     if (is_wide_text(text) && !is_whole_binary_stl(text))
         return Error{Stage::kInput, beginning + "it is UTF-16 text; save it as UTF-8 or ASCII"};
     Result<TriangleMesh> mesh = read_as(text, format, context);

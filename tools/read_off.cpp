@@ -42,14 +42,17 @@ bool remove_prefix(std::string_view& word, std::string_view prefix) {
 }
 
 // [ST][C][N][4][n]OFF, or "off" alone. Returns false if the word is no keyword.
-bool parse_keyword(std::string_view word, Head& head) {
+bool parse_keyword(std::string_view word, Head& result) {
     if (equals_ignoring_case(word, "off")) return true;
+    Head head;
     head.has_texcoord = remove_prefix(word, "ST");
     head.has_color = remove_prefix(word, "C");
     head.has_normal = remove_prefix(word, "N");
     head.is_four_dimensional = remove_prefix(word, "4");
     head.has_dimension = remove_prefix(word, "n");
-    return word == "OFF";
+    if (word != "OFF") return false;
+    result = head;
+    return true;
 }
 
 uint32_t load_big_endian(const char* bytes) {
@@ -89,13 +92,18 @@ Result<Head> read_head(std::string_view text) {
         return head;
     }
     in = before;
+    std::array<size_t, 2> lines = {};
     for (uint64_t* count : {&head.vertices, &head.faces}) {
         const std::optional<int64_t> value = parse_integer(in.word());
         if (!value || *value < 0) return at_line(in.line(), "the numbers of vertices and faces are expected here");
         *count = static_cast<uint64_t>(*value);
+        lines = {lines[1], in.line()};
     }
-    // The third number (edges) is optional in practice.
-    if (parse_integer(TextScanner(in).word_on_line())) (void)in.word_on_line();
+    // The third number (edges) is optional in practice. It stands on the line of the others, or alone as they do.
+    TextScanner after = in;
+    if (lines[0] != lines[1]) (void)after.at_end();
+    const bool has_edges = parse_integer(after.word_on_line()).has_value();
+    if (has_edges && (lines[0] == lines[1] || TextScanner(after).word_on_line().empty())) in = after;
     if (TextScanner(in).word_on_line().empty()) in.next_line();
     head.body = in;
     return head;

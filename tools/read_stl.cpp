@@ -147,13 +147,14 @@ bool is_ascii_stl(std::string_view text) {
     constexpr size_t kSniffed = size_t{1} << 16;
     TextScanner in(text.substr(0, kSniffed));
     if (!begins_ignoring_case(in.word(), "solid")) return false;
-    // The name may be missing, and the line end after it too.
-    const size_t line = in.line();
-    for (std::string_view word = in.word(); !word.empty(); word = in.word()) {
-        if (equals_ignoring_case(word, "facet") || begins_ignoring_case(word, "endsolid")) return true;
-        if (in.line() != line) return false;
+    // The line end after the name may be missing; the name may be, too.
+    for (std::string_view word = in.word_on_line(); !word.empty(); word = in.word_on_line()) {
+        if (equals_ignoring_case(word, "facet") && equals_ignoring_case(TextScanner(in).word_on_line(), "normal")) {
+            return true;
+        }
     }
-    return false;
+    const std::string_view word = in.word();
+    return equals_ignoring_case(word, "facet") || begins_ignoring_case(word, "endsolid");
 }
 
 Result<TriangleMesh> read_stl(std::string_view text, ReadContext& context) {

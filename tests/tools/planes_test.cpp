@@ -109,14 +109,14 @@ TEST(Colors, AMissingTextureIsAWarning) {
 TEST(Colors, ObjTakesOptionsOfItsMapsAndPartsWithoutOne) {
     TemporaryFolder folder;
     save_png(folder.file("t.png"));
-    save(folder.file("a.mtl"), "newmtl plain\nKd 1 0 0\nnewmtl map\nmap_Kd -s 1 1 1 t.png\n");
+    save(folder.file("a.mtl"), "newmtl plain\nKd 0 1 0\nnewmtl map\nmap_Kd -s 1 1 1 t.png\n");
     save(folder.file("a.obj"),
          "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0.25 0.75\nusemtl plain\nf 1 2 3\nusemtl map\nf 2/1 "
          "4/-1 3/1\n");
     const Input input = read_colored(folder.file("a.obj"));
     EXPECT_EQ(input.mesh.appearance.triangle_texture, (std::vector<uint32_t>{UINT32_MAX, 0}));
     const std::vector<Vec3> points = {Vec3(0.1, 0.1, 0), Vec3(0.9, 0.9, 0)};
-    EXPECT_EQ(InputColors(input.mesh).at(points), (std::vector<float>{255, 255, 255, 255, 0, 0}));
+    EXPECT_EQ(InputColors(input.mesh).at(points), (std::vector<float>{0, 255, 0, 255, 0, 0}));
 }
 
 TEST(Colors, AFileThatClaimsHugeTexturesOrBadIndicesIsReadAllTheSame) {
