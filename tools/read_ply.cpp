@@ -28,7 +28,7 @@ enum class Records {
 class Body {
   public:
     Body(std::string_view text, Encoding encoding, Records records)
-        : text_(text), scanner_(text), encoding_(encoding), records_(records) {}
+        : text_(text), scanner_(text, {.comments = true}), encoding_(encoding), records_(records) {}
 
     double next(Scalar type) {
         if (encoding_ == Encoding::kAscii) {
@@ -159,7 +159,7 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
                                                           {"g", Role::kGreen},
                                                           {"b", Role::kBlue}}};
     for (const Entry& entry : kColorRoles) {
-        if (entry.name == name && wants_colors) return entry.role;
+        if (wants_colors && equals_ignoring_case(name, entry.name)) return entry.role;
     }
     if (!is_vertex) return wants_colors && name == "texnumber" ? Role::kTexture : Role::kNone;
     for (const Entry& entry : kVertexRoles) {
@@ -264,6 +264,7 @@ class Reader {
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
         if (soup_.vertex_colors.size() != soup_.positions.size()) soup_.vertex_colors.clear();
         if (soup_.face_colors.size() != soup_.sizes.size()) soup_.face_colors.clear();
+        if (!soup_.vertex_colors.empty()) soup_.face_colors.clear();  // those of vertices are finer
         scale_channels(soup_.vertex_colors, vertex_color_type_);
         scale_channels(soup_.face_colors, face_color_type_);
         return triangulate(std::move(soup_), std::move(textures_->images));

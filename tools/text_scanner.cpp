@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::string_view kNoBreakSpace = "\xC2\xA0";
 
+// Most characters: no blank, no line end, nothing that begins a comment or a continuation.
+bool is_plain(char c) { return c > ' ' && c <= '~' && c != '#' && c != '\\'; }
+
 // The same word with another character in place of the first `from`.
 std::string with(std::string_view word, char from, char to) {
     std::string changed(word);
@@ -82,7 +85,9 @@ bool begins_ignoring_case(std::string_view word, std::string_view lower) {
 size_t TextScanner::blank_size(size_t position) const {
     const char c = text_[position];
     if (c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\0' || c == '\x1A') return 1;
-    return text_.substr(position).starts_with(kNoBreakSpace) ? kNoBreakSpace.size() : 0;
+    if (text_.substr(position).starts_with(kNoBreakSpace)) return kNoBreakSpace.size();
+    // The no-break space of Latin-1. After a byte of ASCII it is no part of a letter in UTF-8.
+    return c == '\xA0' && position > 0 && static_cast<unsigned char>(text_[position - 1]) < 0x80 ? 1 : 0;
 }
 
 size_t TextScanner::line_end_size(size_t position) const {
@@ -98,6 +103,12 @@ size_t TextScanner::continuation_size(size_t position) const {
     return end == text_.size() ? end - position : line_end_size(end) > 0 ? end + line_end_size(end) - position : 0;
 }
 
+bool TextScanner::begins_comment(size_t position) const {
+    if (!syntax_.comments || text_[position] != '#') return false;
+    const bool is_in_number = position > 0 && text_[position - 1] == '.';
+    return !(is_in_number && microsoft_number(1, text_.substr(position, 5)));
+}
+
 void TextScanner::skip_blanks() {
     while (position_ < text_.size()) {
         const size_t blank = blank_size(position_);
@@ -111,7 +122,11 @@ void TextScanner::skip_blanks() {
 void TextScanner::skip_to_line_end() {
     bool in_comment = false;
     while (position_ < text_.size() && line_end_size(position_) == 0) {
-        in_comment = in_comment || (syntax_.comments && text_[position_] == '#');
+        if (is_plain(text_[position_])) {
+            ++position_;
+            continue;
+        }
+        in_comment = in_comment || begins_comment(position_);
         const size_t joined = in_comment ? 0 : continuation_size(position_);
         position_ += std::max<size_t>(joined, 1);
         line_ += joined > 0 ? 1 : 0;
@@ -120,8 +135,7 @@ void TextScanner::skip_to_line_end() {
 
 bool TextScanner::at_end() {
     for (skip_blanks(); position_ < text_.size(); skip_blanks()) {
-        const bool is_comment = syntax_.comments && text_[position_] == '#';
-        if (!is_comment && line_end_size(position_) == 0) return false;
+        if (!begins_comment(position_) && line_end_size(position_) == 0) return false;
         next_line();
     }
     return true;
@@ -135,10 +149,11 @@ std::string_view TextScanner::word() {
 std::string_view TextScanner::word_on_line() {
     skip_blanks();
     const size_t begin = position_;
-    while (position_ < text_.size() && blank_size(position_) == 0 && line_end_size(position_) == 0 &&
-           continuation_size(position_) == 0 && !(syntax_.comments && text_[position_] == '#')) {
-        ++position_;
-    }
+    const auto ends_word = [&] {
+        return blank_size(position_) > 0 || line_end_size(position_) > 0 || continuation_size(position_) > 0 ||
+               begins_comment(position_);
+    };
+    while (position_ < text_.size() && (is_plain(text_[position_]) || !ends_word())) ++position_;
     return text_.substr(begin, position_ - begin);
 }
 

@@ -1,7 +1,7 @@
 // Reads words and numbers from a text in memory. Counts lines, so that messages can name one. Numbers do not depend on
 // the locale. "nan" and "inf" in their usual spellings are numbers: a later stage refuses them with a better message.
 //
-// A line ends with LF, CR LF or CR. Blanks are tab, form feed, the no-break space, and what ends some files: NUL and
+// A line ends with LF, CR LF or CR. Blanks are tab, form feed, the no-break space (UTF-8, Latin-1), and what ends some files: NUL and
 // control-Z.
 #pragma once
 
@@ -52,6 +52,7 @@ class TextScanner {
     size_t blank_size(size_t position) const;
     size_t line_end_size(size_t position) const;
     size_t continuation_size(size_t position) const;
+    bool begins_comment(size_t position) const;
     void skip_blanks();
     // Goes to the end of the line, after its continuations.
     void skip_to_line_end();

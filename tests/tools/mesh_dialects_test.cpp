@@ -17,6 +17,8 @@ using test::to_bytes;
 
 using Color = std::array<float, 3>;
 
+const std::string kNoBreakSpace = "\xC2\xA0";
+
 struct Read {
     Result<TriangleMesh> mesh;
     std::vector<std::string> warnings;
@@ -91,11 +93,8 @@ TEST(Dialects, LinesEndInThreeWaysAndBlanksAreMany) {
         for (const std::string& variant :
              {replaced(text, "\n", "\r\n"), replaced(text, "\n", "\r"), "\xEF\xBB\xBF" + text,
               "\xEF\xBB\xBF" + replaced(text, "\n", "\r"), text + std::string(5, '\0'), text + "\x1A", text + "\n\n \n",
-              replaced(text, " 0", "\t \f0"),
-              replaced(text, " 0",
-                       "\xC2\xA0"
-                       "0"),
-              text.substr(0, text.size() - 1)}) {
+              replaced(text, " 0", "\t \f0"), replaced(text, " 0", kNoBreakSpace + "0"),
+              replaced(text, " 0", kNoBreakSpace.substr(1) + "0"), text.substr(0, text.size() - 1)}) {
             const TriangleMesh mesh = read(variant, extension);
             EXPECT_EQ(mesh.positions, expected.positions) << variant;
             EXPECT_EQ(mesh.triangles, expected.triangles) << variant;
@@ -140,6 +139,10 @@ TEST(Dialects, NumbersComeInManyForms) {
         EXPECT_NE(message(replaced(kOff, "\n1 0 0", "\n" + wrong + " 0 0"), "off").find(wrong), std::string::npos);
         EXPECT_NE(message(replaced(kPly, "\n1 0 0", "\n" + wrong + " 0 0"), "ply").find(wrong), std::string::npos);
         EXPECT_NE(message(replaced(kStl, "x 1 0 0", "x " + wrong + " 0 0"), "stl").find(wrong), std::string::npos);
+    }
+    for (const auto& [text, extension] : {std::pair{kObj, "obj"}, {kOff, "off"}, {kPly, "ply"}, {kStl, "stl"}}) {
+        const std::string nan = replaced(replaced(text, " 1 0 0", " 1.#QNAN 0 0"), "\n1 0 0", "\n-1.#IND00 0 0");
+        EXPECT_TRUE(std::isnan(read(nan, extension).positions.at(1)[0])) << nan;
     }
     EXPECT_NE(message(replaced(kObj, "v 1 0 0", "v 1,5 0 0"), "obj").find("decimal comma"), std::string::npos);
     EXPECT_NE(message(replaced(kObj, "f 1 3 2", "f 0x1 3 2"), "obj").find("0x1"), std::string::npos);
@@ -369,7 +372,7 @@ TEST(PlyDialects, ColorsHaveEveryTypeAndRange) {
                                                                                       {"int", "255 0 51"},
                                                                                       {"ushort", "65535 0 13107"},
                                                                                       {"ushort", "255 0 51"}}) {
-        for (const std::string prefix : {"", "diffuse_"}) {
+        for (const std::string prefix : {"", "diffuse_", "Diffuse_"}) {
             const TriangleMesh mesh = read(colored_ply(type, color, prefix), "ply");
             ASSERT_EQ(mesh.appearance.corner_colors.size(), 1U) << type;
             EXPECT_EQ(mesh.appearance.corner_colors[0][0], expected) << type << " " << color;
@@ -403,6 +406,7 @@ TEST(PlyDialects, NumbersThatTheHeaderDoesNotNameAreDropped) {
         EXPECT_EQ(mesh.triangles, expected.triangles) << text;
         EXPECT_EQ(result.warnings.size(), 1U) << text;
     }
+    EXPECT_EQ(read(replaced(kPly, "\n1 0 0", " # first\n# all\n1 0 0"), "ply").positions, expected.positions);
     // Records that share or wrap lines.
     for (const std::string& text : {kPlyHead + replaced(kPly.substr(kPlyHead.size()), "\n", " "),
                                     kPlyHead + replaced(kPly.substr(kPlyHead.size()), " ", "\n")}) {
