@@ -9,6 +9,7 @@ add_library(gim_readers STATIC
     ${folder}/foreign_format.cpp
     ${folder}/memory_budget.cpp
     ${folder}/mesh_read.cpp
+    ${folder}/ply_body.cpp
     ${folder}/ply_header.cpp
     ${folder}/polygons.cpp
     ${folder}/read_gltf.cpp
