@@ -15,7 +15,7 @@ struct Signature {
     std::string_view name;
 };
 
-constexpr std::array<Signature, 26> kMeshes = {{{"Kaydara FBX Binary"sv, "an FBX file"sv},
+constexpr std::array<Signature, 25> kMeshes = {{{"Kaydara FBX Binary"sv, "an FBX file"sv},
                                                 {"; FBX"sv, "an FBX file"sv},
                                                 {"ISO-10303-21"sv, "a STEP file"sv},
                                                 {"Ogawa"sv, "an Alembic file"sv},
@@ -37,7 +37,6 @@ constexpr std::array<Signature, 26> kMeshes = {{{"Kaydara FBX Binary"sv, "an FBX
                                                 {"MD2"sv, "an MD2 model"sv},
                                                 {"MMDl"sv, "a 3DMF file"sv},
                                                 {"U3D\0"sv, "a U3D file"sv},
-                                                {"solid\0"sv, "a damaged STL file"sv},
                                                 {"# .PCD"sv, "a PCD point cloud"sv},
                                                 {"LASF"sv, "a LAS point cloud"sv},
                                                 {"ASTM-E57"sv, "an E57 point cloud"sv}}};

@@ -120,7 +120,7 @@ void read_materials(std::string_view text, Textures& textures, std::vector<Mater
 
 void read_material_files(std::string_view names, Textures& textures, std::vector<Material>& materials) {
     if (!textures.exists(trimmed_name(names))) names = without_comment(names);
-    constexpr int kMostFiles = 256;  // a line with more is nonsense
+    constexpr int kMostFiles = 64;  // a line with more is nonsense
     constexpr size_t kLongestName = 255;
     for (int files = 0; files < kMostFiles; ++files) {
         names.remove_prefix(std::min(names.find_first_not_of(kBlanks), names.size()));

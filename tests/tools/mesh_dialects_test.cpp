@@ -339,6 +339,7 @@ TEST(StlDialects, BinaryFilesMayBeginWithSolidAndEndLate) {
     const TriangleMesh expected = read(binary_stl(2, 2), "stl");
     ASSERT_EQ(expected.triangles.size(), 2U);
     for (const std::string& text : {binary_stl(2, 2) + "tail", binary_stl(2, 2, "solid facet") + std::string(49, '\0'),
+                                    binary_stl(2, 2, std::string("solid") + '\0') + "tail",
                                     binary_stl(2, 2, std::string("\xEF\xBB\xBF") + "x")}) {
         EXPECT_EQ(read(text, "stl").positions, expected.positions);
     }
