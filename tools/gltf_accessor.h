@@ -27,7 +27,7 @@ Column read_column(File& file, uint64_t accessor);
 // The vertex numbers of an index accessor, as they stand.
 struct Indices {
     std::vector<uint32_t> values;
-    uint32_t restart;  // the largest number of the component type: begins a new strip or fan
+    uint32_t restart = UINT32_MAX;  // the largest number of the component type: begins a new strip or fan
 };
 Indices read_indices(File& file, uint64_t accessor);
 

@@ -90,7 +90,9 @@ TEST(GltfContainer, WrongTypesAreRefusedOrIgnored) {
             Json changed = good;
             changed[Json::json_pointer(path)] = value;
             const GltfRead read = read_gltf_text(changed.dump());
-            if (!read.ok) EXPECT_TRUE(says(read.message, "(as glTF)")) << path << " " << value << " " << read.message;
+            if (!read.ok) {
+                EXPECT_TRUE(says(read.message, "(as glTF)")) << path << " " << value << " " << read.message;
+            }
         }
     }
 }

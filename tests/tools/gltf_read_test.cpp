@@ -322,7 +322,7 @@ TEST(GltfRead, WeightsAreSharedAmongEightJoints) {
     file.attribute("WEIGHTS_1", file.accessor("VEC4", weights));
     const GltfRead read = read_gltf_file(file);
     ASSERT_TRUE(read.ok) << read.message;
-    expect_point(read.mesh.positions[1], {6, 0, 5}) << "half of each, since weights are made to sum to 1";
+    expect_point(read.mesh.positions[1], {6, 0, 5});  // half of each, since weights are made to sum to 1
 }
 
 TEST(GltfRead, MirroredSkinsKeepFacesOutward) {
