@@ -165,7 +165,8 @@ void add_plane_options(CLI::App* sub, EncodeArguments& a) {
 void add_encode(CLI::App& app, EncodeArguments& a) {
     CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
     sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension.\n"
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension. glTF is read in\n"
+        "the file's own pose: morph weights and skins apply, animations do not. Draco and meshopt are decompressed.\n"
         "The surface must be orientable, without non-manifold edges or vertices. gim first welds duplicate vertices\n"
         "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"

@@ -155,12 +155,10 @@ Column DracoMesh::column(uint64_t unique_id, bool normalized) const {
         if (value.value() >= attribute->size() || !attribute->ConvertValue<double>(value, row)) {
             throw Failure("Draco: a vertex has no value");
         }
-        for (size_t k = 0; k < column.width; ++k) {
-            // ConvertValue has divided the integers of an attribute that Draco itself knows as normalized.
-            if (attribute->normalized())
-                row[k] = std::max(row[k], -1.0);
-            else if (normalized)
-                row[k] = normalized_value(row[k], attribute->data_type());
+        // ConvertValue has divided the integers of an attribute that Draco itself knows as normalized.
+        const bool divided = attribute->normalized();
+        for (size_t k = 0; k < column.width && (divided || normalized); ++k) {
+            row[k] = divided ? std::max(row[k], -1.0) : normalized_value(row[k], attribute->data_type());
         }
     }
     return column;

@@ -71,6 +71,7 @@ uint32_t Pictures::load(uint64_t texture) {
 uint32_t Pictures::load_image(uint64_t image) {
     const auto known = images_loaded_.find(image);
     if (known != images_loaded_.end()) return known->second;
+    uint32_t& index = images_loaded_[image] = Textures::kNoTexture;  // a failure is told once for an image
     const Json& object = element(file_.root(), "images", image);
     const std::optional<uint64_t> view = whole_number(object, "bufferView");
     const std::string uri = text(object, "uri");
@@ -88,8 +89,7 @@ uint32_t Pictures::load_image(uint64_t image) {
     }
     const std::string kind = unread_kind(bytes);
     if (!kind.empty()) throw Failure("image " + std::to_string(image) + " is " + kind + ", which gim does not read");
-    const uint32_t index = file_.context().textures->add(bytes, std::to_string(image) + " of the glTF file");
-    images_loaded_.emplace(image, index);
+    index = file_.context().textures->add(bytes, std::to_string(image) + " of the glTF file");
     return index;
 }
 

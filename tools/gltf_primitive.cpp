@@ -62,9 +62,15 @@ Column Primitive::column(const std::string& name) {
     const std::optional<uint64_t> accessor = whole_number(member(object_, "attributes"), name);
     if (!accessor) throw Failure("a primitive has no " + name);
     const std::optional<uint64_t> packed = whole_number(member(extension(object_, kDraco), "attributes"), name);
-    if (!packed) return read_column(file_, *accessor);
+    // Integer colours are fractions, also where a program forgot to say so.
+    const bool is_color = name.starts_with("COLOR_");
+    if (!packed) {
+        Column plain = read_column(file_, *accessor);
+        plain.normalized = plain.normalized || is_color;
+        return plain;
+    }
     const Json& normalized = member(element(file_.root(), "accessors", *accessor), "normalized");
-    return draco()->column(*packed, normalized.is_boolean() && normalized.get<bool>());
+    return draco()->column(*packed, is_color || (normalized.is_boolean() && normalized.get<bool>()));
 }
 
 uint64_t Primitive::vertices() {

@@ -1,10 +1,10 @@
 // Reads triangle meshes: PLY (ascii, binary of either byte order), OBJ, OFF, STL (ascii, binary), glTF 2 and GLB.
 //
-// The text and the simple binary formats have readers of our own. OpenMesh 9.0 loses what the encoder needs, even with
-// a custom importer that bypasses its half-edges. Its coordinates pass through float (4300000.125 becomes 4300000). A
-// "nan" in a text file turns the rest of it into zeros or stale indices without an error. Its STL reader drops
-// degenerate triangles and merges equal vertices. A header that claims 2^31 elements aborts the program. glTF goes
-// through tinygltf. The tests read the files that gim writes with OpenMesh, as a second opinion.
+// All formats have readers of our own; read_gltf.cpp says why glTF has one. OpenMesh 9.0 loses what the encoder needs,
+// even with a custom importer that bypasses its half-edges. Its coordinates pass through float (4300000.125 becomes
+// 4300000). A "nan" in a text file turns the rest of it into zeros or stale indices without an error. Its STL reader
+// drops degenerate triangles and merges equal vertices. A header that claims 2^31 elements aborts the program. The tests
+// read the files that gim writes with OpenMesh, as a second opinion.
 //
 // Readers keep every vertex and face in file order and cut faces with more than three corners into triangles. They keep
 // non-finite coordinates; the cleaning stage reports them. No reader allocates more than

@@ -12,6 +12,8 @@ namespace gim::test {
 
 using Json = nlohmann::json;
 
+inline bool says(const std::string& text, const std::string& word) { return text.find(word) != std::string::npos; }
+
 inline std::string base64(const std::string& data) {
     static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string out;

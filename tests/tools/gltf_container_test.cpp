@@ -12,9 +12,8 @@ using test::GltfRead;
 using test::Json;
 using test::read_gltf_file;
 using test::read_gltf_text;
+using test::says;
 using test::tetrahedron;
-
-bool says(const std::string& text, const std::string& word) { return text.find(word) != std::string::npos; }
 
 std::string u32(uint32_t value) {
     std::string bytes(4, '\0');

@@ -18,9 +18,8 @@ using test::GltfRead;
 using test::Json;
 using test::read_gltf_file;
 using test::read_gltf_text;
+using test::says;
 using Point = std::array<double, 3>;
-
-bool says(const std::string& text, const std::string& word) { return text.find(word) != std::string::npos; }
 
 // A bumpy grid of side * side vertices, so that the codecs have something to predict.
 constexpr uint32_t kSide = 9;

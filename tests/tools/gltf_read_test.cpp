@@ -15,11 +15,10 @@ using test::GltfRead;
 using test::Json;
 using test::read_gltf_file;
 using test::read_gltf_text;
+using test::says;
 using test::tetrahedron;
 using Point = std::array<double, 3>;
 using Triangle = std::array<uint32_t, 3>;
-
-bool says(const std::string& text, const std::string& word) { return text.find(word) != std::string::npos; }
 
 void expect_point(const Point& point, const Point& right) {
     for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(point[k], right[k], 1e-6) << k;
@@ -469,6 +468,21 @@ TEST(GltfRead, ColoursThatDoNotFitAreLeftOutWithAWarning) {
     const GltfRead read = read_gltf_file(file);
     ASSERT_TRUE(read.ok) << read.message;
     EXPECT_TRUE(says(read.all_warnings, "COLOR_0")) << read.all_warnings;
+}
+
+TEST(GltfRead, IntegerColoursAreFractionsWhateverTheySay) {
+    GltfBuilder file = tetrahedron();
+    file.attribute("COLOR_0", file.accessor<uint8_t>("VEC4", {255, 0, 0, 9, 255, 0, 0, 9, 255, 0, 0, 9, 255, 0, 0, 9}));
+    for (const bool normalized : {false, true}) {
+        file.root["accessors"].back()["normalized"] = normalized;
+        const GltfRead read = read_gltf_file(file);
+        ASSERT_TRUE(read.ok && !read.mesh.appearance.corner_colors.empty()) << read.message;
+        EXPECT_EQ(read.mesh.appearance.corner_colors[0][0], (std::array<float, 3>{1, 0, 0}));
+    }
+    // One part in 255 is dark, not white.
+    GltfBuilder dark = tetrahedron();
+    dark.attribute("COLOR_0", dark.accessor<uint8_t>("VEC4", std::vector<uint8_t>(16, 1)));
+    EXPECT_LT(read_gltf_file(dark).mesh.appearance.corner_colors.at(0)[0][0], 0.1F);
 }
 
 TEST(GltfRead, OlderMaterialsGiveTheirDiffuseColour) {
