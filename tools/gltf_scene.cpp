@@ -4,7 +4,7 @@ namespace gim::gltf {
 namespace {
 
 constexpr int kMaxDepth = 256;               // deeper trees are cycles or nonsense
-constexpr uint64_t kMaxVisits = 1ULL << 22;  // nodes shared by shared nodes multiply quickly
+constexpr uint64_t kMaxVisits = 1ULL << 20;  // nodes shared by shared nodes multiply quickly
 constexpr uint64_t kNoParent = UINT64_MAX;
 
 const std::string kCycle = "its nodes are nested too deeply (a cycle?)";
@@ -118,6 +118,7 @@ std::vector<Eigen::Affine3d> instances_of(File& file, const Json& node) {
         }
     }
     take(file.memory(), count, sizeof(Eigen::Affine3d), "its instances");
+    transforms.reserve(count);
     for (uint64_t i = 0; i < count; ++i) {
         Eigen::Affine3d transform = Eigen::Affine3d::Identity();
         const auto vector = [&](const Column& from) {

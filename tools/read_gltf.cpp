@@ -189,7 +189,7 @@ class Reader {
     }
 
     static constexpr uint64_t kMaxCorners = 3ULL << 30;     // instances of instances multiply quickly
-    static constexpr uint64_t kMaxPrimitives = 1ULL << 22;  // so do their empty primitives
+    static constexpr uint64_t kMaxPrimitives = 1ULL << 20;  // so do their empty primitives
 
     ReadContext& context_;
     File file_;
