@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tools/commands.h"
+#include "tools/input.h"
 
 namespace gim {
 namespace {
@@ -56,6 +57,16 @@ CLI::Validator max_error_validator() {
         return max_error_target(text) ? "" : "must be a length above 0, as 0.5 or 0.1%, not " + text;
     };
     return {check, "LENGTH"};
+}
+
+// Bounds what the meshes that a command reads may expand to.
+void add_max_memory(CLI::App* sub, uint64_t& bytes) {
+    sub->add_option("--max-memory", bytes,
+                    "Most memory that reading a mesh may take, as 500M or 2G. A file that needs more is refused before "
+                    "it is taken. Default: half of the machine's memory")
+        ->transform(CLI::AsSizeValue(false))
+        ->type_name("SIZE")
+        ->default_str("");
 }
 
 struct EncodeArguments {
@@ -154,7 +165,8 @@ void add_plane_options(CLI::App* sub, EncodeArguments& a) {
 void add_encode(CLI::App& app, EncodeArguments& a) {
     CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
     sub->footer(
-        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension.\n"
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension. glTF is read in\n"
+        "the file's own pose: morph weights and skins apply, animations do not. Draco and meshopt are decompressed.\n"
         "The surface must be orientable, without non-manifold edges or vertices. gim first welds duplicate vertices\n"
         "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
@@ -176,6 +188,7 @@ void add_encode(CLI::App& app, EncodeArguments& a) {
                     "Number of threads, 0: all cores. The bytes do not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
+    add_max_memory(sub, a.command.max_memory);
     sub->add_option("--json", a.command.json, "Write every figure of the run to this file (-: standard output)")
         ->type_name("REPORT");
     sub->add_option("--debug-dir", a.command.debug_folder,
@@ -290,6 +303,7 @@ void add_compare(CLI::App& app, CompareCommand& c) {
     sub->add_option("--threads", c.options.threads, "Number of threads, 0: all cores. The figures do not depend on it")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
+    add_max_memory(sub, c.max_memory);
     sub->add_flag("--json", c.json, "Print JSON");
 }
 
@@ -324,6 +338,7 @@ void add_render(CLI::App& app, RenderCommand& c) {
         ->capture_default_str();
     sub->add_flag("--flat", c.flat, "Shade each triangle with one normal");
     sub->add_flag("--wire", c.wire, "Draw the edges");
+    add_max_memory(sub, c.max_memory);
 }
 
 }  // namespace
@@ -332,6 +347,18 @@ int report_error(const std::string& file, const Error& error) {
     const std::string stage(stage_name(error.stage));
     std::fprintf(stderr, "gim: %s: %s: %s\n", file.c_str(), stage.c_str(), error.message.c_str());
     return 1;
+}
+
+void print_warnings(const std::string& file, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "gim: %s: warning: %s\n", file.c_str(), warning.c_str());
+}
+
+Result<TriangleMesh> read_surface_aloud(const std::string& path, uint32_t level, uint64_t max_memory) {
+    std::vector<std::string> warnings;
+    Result<TriangleMesh> surface = read_surface(path, level, {Want::kShape, max_memory}, &warnings);
+    print_warnings(path, warnings);
+    return surface;
 }
 
 std::string with_thousands(uint64_t number) {

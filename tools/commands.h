@@ -4,8 +4,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gim/encoder.h"
+#include "tools/memory_budget.h"
 
 namespace gim {
 
@@ -15,6 +17,7 @@ struct EncodeCommand {
     std::string json;          // file for the report; empty: none; "-": stdout
     std::string debug_folder;  // empty: no pictures
     bool quiet = false;
+    uint64_t max_memory = default_max_memory();  // for the mesh as read
 };
 int run_encode(const EncodeCommand& command);
 
@@ -37,6 +40,7 @@ struct CompareCommand {
     CompareOptions options;
     uint32_t level = 0;
     bool json = false;
+    uint64_t max_memory = default_max_memory();  // for each mesh as read
 };
 int run_compare(const CompareCommand& command);
 
@@ -50,11 +54,16 @@ struct RenderCommand {
     double azimuth = 35, elevation = 20;  // degrees
     bool flat = false;
     bool wire = false;
+    uint64_t max_memory = default_max_memory();  // for each mesh as read
 };
 int run_render(const RenderCommand& command);
 
 // Prints "gim: FILE: STAGE: message" on stderr; returns 1.
 int report_error(const std::string& file, const Error& error);
+// Prints "gim: FILE: warning: text" on stderr for each.
+void print_warnings(const std::string& file, const std::vector<std::string>& warnings);
+// Reads a surface as in tools/input.h. Prints its warnings.
+Result<TriangleMesh> read_surface_aloud(const std::string& path, uint32_t level, uint64_t max_memory);
 
 std::string with_thousands(uint64_t number);           // 34835 -> "34,835"
 void print_line(const std::string& text);              // on stdout

@@ -52,9 +52,9 @@ std::string describe_fold(const Defects::Fold& fold) {
 }
 
 int run_compare(const CompareCommand& command) {
-    const Result<TriangleMesh> reference = read_surface(command.reference, 0);
+    const Result<TriangleMesh> reference = read_surface_aloud(command.reference, 0, command.max_memory);
     if (!reference.ok()) return report_error(command.reference, reference.error());
-    const Result<TriangleMesh> test = read_surface(command.test, command.level);
+    const Result<TriangleMesh> test = read_surface_aloud(command.test, command.level, command.max_memory);
     if (!test.ok()) return report_error(command.test, test.error());
     CompareOptions options = command.options;
     options.normals = options.defects = true;

@@ -106,10 +106,9 @@ int run_encode(const EncodeCommand& command) {
         if (!writable.ok()) return report_error(path, writable.error());
     }
 
-    Result<Input> input = read_input(command.input, Want::kShapeAndColors);
+    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory});
     if (!input.ok()) return report_error(command.input, input.error());
-    for (const std::string& warning : input.value().warnings)
-        std::fprintf(stderr, "gim: %s: warning: %s\n", command.input.c_str(), warning.c_str());
+    print_warnings(command.input, input.value().warnings);
 
     StatePictures pictures(command.debug_folder);
     const bool draws = !command.debug_folder.empty();

@@ -71,7 +71,13 @@ double diagonal_of(const RawImage& image) {
     return std::sqrt(sum);
 }
 
-Result<Input> read_input(const std::string& path, Want want) {
+Result<Input> read_input(const std::string& path, const ReadOptions& options) {
+    MemoryBudget memory(options.max_memory);
+    std::error_code unknown;  // of a pipe, which read_file reads all the same
+    const uint64_t size = std::filesystem::file_size(path, unknown);
+    if (!unknown) {
+        if (const Result<void> fits = memory.take(size, 1, "the bytes of the file"); !fits.ok()) return fits.error();
+    }
     Result<Bytes> file = read_file(path);
     if (!file.ok()) return file.error();
     Bytes& bytes = file.value();
@@ -93,18 +99,21 @@ Result<Input> read_input(const std::string& path, Want want) {
     }
     const std::string folder = std::filesystem::path(path).parent_path().string();
     Textures textures(folder);
-    Result<TriangleMesh> mesh =
-        read_mesh(bytes, input.format, folder, want == Want::kShapeAndColors ? &textures : nullptr);
+    ReadContext context{folder, options.want == Want::kShapeAndColors ? &textures : nullptr, memory};
+    textures.limit_memory(&context.memory);
+    Result<TriangleMesh> mesh = read_mesh(bytes, input.format, context);
     if (!mesh.ok()) return mesh.error();
-    input.warnings = std::move(textures.warnings);
+    input.warnings = std::move(context.warnings);
     input.mesh = std::move(mesh.value());
     return input;
 }
 
-Result<TriangleMesh> read_surface(const std::string& path, uint32_t level) {
-    Result<Input> read = read_input(path);
+Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const ReadOptions& options,
+                                  std::vector<std::string>* warnings) {
+    Result<Input> read = read_input(path, options);
     if (!read.ok()) return read.error();
     Input& input = read.value();
+    if (warnings) *warnings = std::move(input.warnings);
     switch (input.kind) {
         case Input::Kind::kGim: {
             const Result<std::vector<DecodedImage>> images = decode_images(input.bytes, level);

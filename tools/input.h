@@ -34,15 +34,22 @@ struct Input {
     TriangleMesh mesh;                         // kMesh only
     RawImage raw;                              // kRawImage only
     Bytes bytes;                               // kGim only
-    std::vector<std::string> warnings;         // one per missing texture
+    std::vector<std::string> warnings;         // what the mesh lost on its way in, one line each
+};
+
+enum class Want { kShape, kShapeAndColors };
+
+struct ReadOptions {
+    Want want = Want::kShape;
+    uint64_t max_memory = default_max_memory();  // bytes that the file and the mesh in it may take
 };
 
 // Reads the file and decides by content, then by extension.
-enum class Want { kShape, kShapeAndColors };
-Result<Input> read_input(const std::string& path, Want want = Want::kShape);
+Result<Input> read_input(const std::string& path, const ReadOptions& options = {});
 
 // Returns any of the three as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
-// formats that repeat them.
-Result<TriangleMesh> read_surface(const std::string& path, uint32_t level);
+// formats that repeat them. `warnings`: takes those of the input; null: nobody wants them.
+Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const ReadOptions& options = {},
+                                  std::vector<std::string>* warnings = nullptr);
 
 }  // namespace gim

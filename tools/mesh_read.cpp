@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tools/little_endian.h"
+#include "tools/foreign_format.h"
 #include "tools/text_scanner.h"
 
 namespace gim {
@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kSniffed = size_t{1} << 16;
 
 bool has_obj_line(std::string_view text) {
-    TextScanner in(text.substr(0, kSniffed));
+    TextScanner in(text.substr(0, kSniffed), {.comments = true, .continuations = true});
     while (!in.at_end()) {
         const std::string_view keyword = in.word_on_line();
         if (keyword == "v" && parse_real(in.word_on_line()) && parse_real(in.word_on_line()) &&
@@ -24,26 +24,17 @@ bool has_obj_line(std::string_view text) {
     return false;
 }
 
-bool has_stl_facet(std::string_view text) {
-    TextScanner in(text.substr(0, kSniffed));
-    if (in.word_on_line() != "solid") return false;
-    in.next_line();
-    const std::string_view word = in.word();
-    return word == "facet" || word == "endsolid";
-}
-
 MeshFormat by_content(std::string_view text) {
-    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return MeshFormat::kPly;
+    if (TextScanner(text.substr(0, kSniffed)).word_on_line() == "ply") return MeshFormat::kPly;
     if (text.starts_with("glTF")) return MeshFormat::kGltf;
-    TextScanner in(text.substr(0, kSniffed));
-    const std::string_view word = in.word();
-    if (word == "OFF" || word == "COFF" || word == "NOFF" || word == "CNOFF" || word == "STOFF")
-        return MeshFormat::kOff;
-    if (has_stl_facet(text)) return MeshFormat::kStl;
+    if (is_whole_binary_stl(text)) return MeshFormat::kStl;
+    if (is_wide_text(text) || !describe_foreign_format(text).empty()) return MeshFormat::kUnknown;
+    const std::string_view word = TextScanner(text.substr(0, kSniffed), {.comments = true}).word();
+    if (is_off_keyword(word)) return MeshFormat::kOff;
+    if (is_ascii_stl(text)) return MeshFormat::kStl;
     if (word.starts_with('{') && text.substr(0, kSniffed).find("\"asset\"") != std::string_view::npos) {
         return MeshFormat::kGltf;
     }
-    if (text.size() >= 84 && text.size() == 84 + 50 * uint64_t{load_u32(text.data() + 80)}) return MeshFormat::kStl;
     if (has_obj_line(text)) return MeshFormat::kObj;
     return MeshFormat::kUnknown;
 }
@@ -57,33 +48,39 @@ MeshFormat by_extension(std::string_view extension) {
     return MeshFormat::kUnknown;
 }
 
+// Without the byte order mark of a text. The free header of a binary STL may begin with those bytes, too.
 std::string_view as_text(std::span<const uint8_t> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return is_whole_binary_stl(all) ? all : without_byte_order_mark(all);
 }
 
-Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, const std::string& folder, Textures* textures) {
+Result<TriangleMesh> read_as(std::string_view text, MeshFormat format, ReadContext& context) {
     switch (format) {
         case MeshFormat::kPly:
-            return read_ply(text, textures);
+            return read_ply(text, context);
         case MeshFormat::kObj:
-            return read_obj(text, textures);
+            return read_obj(text, context);
         case MeshFormat::kOff:
-            return read_off(text);
+            return read_off(text, context);
         case MeshFormat::kStl:
-            return read_stl(text);
+            return read_stl(text, context);
         case MeshFormat::kGltf:
-            return read_gltf(text, folder, textures);
+            return read_gltf(text, context);
         case MeshFormat::kUnknown:
             break;
     }
+    const std::string foreign = describe_foreign_format(text);
+    if (!foreign.empty()) return Error{Stage::kInput, foreign};
     return Error{Stage::kInput, "neither its content nor its name is that of PLY, OBJ, OFF, STL, glTF or GLB"};
 }
 
 }  // namespace
 
 MeshFormat detect_format(std::span<const uint8_t> bytes, std::string_view extension) {
-    const MeshFormat content = by_content(as_text(bytes));
-    return content != MeshFormat::kUnknown ? content : by_extension(extension);
+    const std::string_view text = as_text(bytes);
+    const MeshFormat content = by_content(text);
+    if (content != MeshFormat::kUnknown || !describe_foreign_format(text).empty()) return content;
+    return by_extension(extension);
 }
 
 std::string_view format_name(MeshFormat format) {
@@ -106,11 +103,18 @@ std::string_view format_name(MeshFormat format) {
 
 bool repeats_vertices(MeshFormat format) { return format == MeshFormat::kStl || format == MeshFormat::kGltf; }
 
-Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, const std::string& folder,
-                               Textures* textures) {
+Result<TriangleMesh> read_mesh(std::span<const uint8_t> bytes, MeshFormat format, ReadContext& context) {
     const std::string beginning = "not a mesh that gim can read: ";
     if (bytes.empty()) return Error{Stage::kInput, beginning + "the file is empty"};
-    Result<TriangleMesh> mesh = read_as(as_text(bytes), format, folder, textures);
+    const std::string_view text = as_text(bytes);
+    if (is_wide_text(text) && !is_whole_binary_stl(text))
+        return Error{Stage::kInput, beginning + "it is UTF-16 text; save it as UTF-8 or ASCII"};
+    Result<TriangleMesh> mesh = read_as(text, format, context);
+    if (context.textures) {
+        std::vector<std::string>& late = context.textures->warnings;
+        context.warnings.insert(context.warnings.end(), late.begin(), late.end());
+        late.clear();
+    }
     if (!mesh.ok()) {
         const std::string as = format == MeshFormat::kUnknown ? "" : "(as " + std::string(format_name(format)) + ") ";
         return Error{mesh.error().stage, beginning + as + mesh.error().message};

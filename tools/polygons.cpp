@@ -100,16 +100,49 @@ void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const Local
         const auto& uv = soup.corner_texcoords;
         appearance.corner_texcoords.push_back({uv[first + local[0]], uv[first + local[1]], uv[first + local[2]]});
     }
-    if (!soup.vertex_colors.empty()) {
+    if (!soup.vertex_colors.empty() || !soup.face_colors.empty()) {
         constexpr std::array<float, 3> kWhite = {1, 1, 1};
         const auto color = [&](uint32_t v) {
-            return texture != UINT32_MAX && !soup.colors_tint_textures ? kWhite : soup.vertex_colors[v];
+            if (texture != UINT32_MAX && !soup.colors_tint_textures) return kWhite;
+            return soup.vertex_colors.empty() ? soup.face_colors[f] : soup.vertex_colors[v];
         };
         appearance.corner_colors.push_back({color(triangle[0]), color(triangle[1]), color(triangle[2])});
     }
 }
 
 }  // namespace
+
+void scale_colors(std::vector<std::array<float, 3>>& colors) {
+    constexpr float kRounding = 2;  // of colours in 0..255, such a file would be black
+    float most = 0;
+    for (const std::array<float, 3>& color : colors) {
+        for (const float c : color) most = c > most ? c : most;
+    }
+    const float white = most <= kRounding ? 1.0f : most <= 255 ? 255.0f : 65535.0f;
+    for (std::array<float, 3>& color : colors) {
+        if (color == kNoColor) color = {white, white, white};
+        for (float& c : color) c = c > 0 ? std::min(c / white, 1.0f) : 0.0f;
+    }
+}
+
+uint64_t vertex_memory(const ReadContext& context) {
+    return sizeof(std::array<double, 3>) + (context.textures ? sizeof(std::array<float, 3>) : 0);
+}
+
+uint64_t corner_memory(const ReadContext& context) {
+    constexpr uint64_t kShape = sizeof(int64_t) + sizeof(std::array<uint32_t, 3>);  // a triangle each, at most
+    constexpr uint64_t kLook = sizeof(Appearance{}.corner_colors[0]) + sizeof(Appearance{}.corner_texcoords[0]) +
+                               sizeof(uint32_t) + sizeof(std::array<float, 2>);
+    return kShape + (context.textures ? kLook : 0);
+}
+
+Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& context) {
+    Result<void> fits =
+        context.memory.take(vertices, vertex_memory(context), "its " + std::to_string(vertices) + " vertices");
+    if (!fits.ok()) return fits;
+    return context.memory.take(corners, corner_memory(context),
+                               "the " + std::to_string(corners) + " corners of its faces");
+}
 
 Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures) {
     const auto vertex_count = static_cast<int64_t>(soup.positions.size());
@@ -124,7 +157,7 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> tex
         soup.face_texture.clear();
         soup.corner_texcoords.clear();
     }
-    const bool is_colored = !soup.face_texture.empty() || !soup.vertex_colors.empty();
+    const bool is_colored = !soup.face_texture.empty() || !soup.vertex_colors.empty() || !soup.face_colors.empty();
     std::vector<uint32_t> face;
     std::vector<LocalTriangle> pieces;
     size_t first = 0;

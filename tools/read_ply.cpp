@@ -1,219 +1,21 @@
 // PLY: ascii, binary_little_endian, binary_big_endian, with any property types. Skips unknown elements and properties.
 // Reads the faces' vertex_indices (or vertex_index), or the strips of a tristrips element. If colours are wanted, also
-// red, green, blue of the vertices, and texture coordinates of vertices (u v, s t, texture_u texture_v) or of face
+// red, green, blue of the vertices or else of the faces, and texture coordinates of vertices (u v, s t, texture_u texture_v) or of face
 // corners (texcoord, texnumber) for the images that "comment TextureFile" names.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
-#include "tools/little_endian.h"
 #include "tools/mesh_read.h"
+#include "tools/ply_body.h"
 #include "tools/polygons.h"
 #include "tools/text_scanner.h"
 
 namespace gim {
 namespace {
 
-enum class Encoding { kAscii, kLittleEndian, kBigEndian };
-enum class Scalar { kNone, kI8, kU8, kI16, kU16, kI32, kU32, kF32, kF64 };
-
-struct Property {
-    std::string_view name;
-    Scalar type = Scalar::kNone;
-    Scalar count_type = Scalar::kNone;  // kNone: a single value, else a list
-};
-
-struct Element {
-    std::string_view name;
-    uint64_t count = 0;
-    std::vector<Property> properties;
-};
-
-struct Header {
-    Encoding encoding = Encoding::kAscii;
-    std::vector<Element> elements;
-    std::vector<std::string_view> textures;
-    size_t size = 0;  // bytes, "end_header" line included
-};
-
-Scalar scalar_named(std::string_view name) {
-    struct Entry {
-        std::string_view name, alias;
-        Scalar type;
-    };
-    static constexpr std::array<Entry, 8> kScalars = {{{"char", "int8", Scalar::kI8},
-                                                       {"uchar", "uint8", Scalar::kU8},
-                                                       {"short", "int16", Scalar::kI16},
-                                                       {"ushort", "uint16", Scalar::kU16},
-                                                       {"int", "int32", Scalar::kI32},
-                                                       {"uint", "uint32", Scalar::kU32},
-                                                       {"float", "float32", Scalar::kF32},
-                                                       {"double", "float64", Scalar::kF64}}};
-    for (const Entry& entry : kScalars) {
-        if (name == entry.name || name == entry.alias) return entry.type;
-    }
-    return Scalar::kNone;
-}
-
-size_t size_of(Scalar type) {
-    switch (type) {
-        case Scalar::kNone:
-            return 0;
-        case Scalar::kI8:
-        case Scalar::kU8:
-            return 1;
-        case Scalar::kI16:
-        case Scalar::kU16:
-            return 2;
-        case Scalar::kI32:
-        case Scalar::kU32:
-        case Scalar::kF32:
-            return 4;
-        case Scalar::kF64:
-            return 8;
-    }
-    return 0;
-}
-
-Error bad_header(size_t line, const std::string& what) {
-    return {Stage::kInput, "PLY header, line " + std::to_string(line) + ": " + what};
-}
-
-Result<Header> read_header(std::string_view text) {
-    Header header;
-    TextScanner in(text);
-    if (in.word_on_line() != "ply") return Error{Stage::kInput, "it does not begin with 'ply'"};
-    bool has_format = false;
-    while (in.next_line()) {
-        const size_t line = in.line();
-        const std::string_view keyword = in.word_on_line();
-        if (keyword == "format") {
-            const std::string_view name = in.word_on_line();
-            if (name == "ascii") {
-                header.encoding = Encoding::kAscii;
-            } else if (name == "binary_little_endian") {
-                header.encoding = Encoding::kLittleEndian;
-            } else if (name == "binary_big_endian") {
-                header.encoding = Encoding::kBigEndian;
-            } else {
-                return bad_header(line, "unknown format '" + std::string(name.substr(0, 40)) + "'");
-            }
-            has_format = true;
-        } else if (keyword == "element") {
-            Element element;
-            element.name = in.word_on_line();
-            const std::optional<int64_t> count = parse_integer(in.word_on_line());
-            if (!count || *count < 0) return bad_header(line, "an element needs a name and a number");
-            element.count = static_cast<uint64_t>(*count);
-            header.elements.push_back(element);
-        } else if (keyword == "property") {
-            if (header.elements.empty()) return bad_header(line, "a property comes before the first element");
-            Property property;
-            std::string_view type = in.word_on_line();
-            if (type == "list") {
-                property.count_type = scalar_named(in.word_on_line());
-                if (property.count_type == Scalar::kNone)
-                    return bad_header(line, "the length of a list has an unknown type");
-                type = in.word_on_line();
-            }
-            property.type = scalar_named(type);
-            if (property.type == Scalar::kNone) {
-                return bad_header(line, "unknown type '" + std::string(type.substr(0, 40)) + "'");
-            }
-            property.name = in.word_on_line();
-            header.elements.back().properties.push_back(property);
-        } else if (keyword == "end_header") {
-            in.next_line();
-            header.size = in.offset();
-            if (!has_format) return bad_header(line, "the format line is missing");
-            return header;
-        } else if (keyword == "comment") {
-            TextScanner ahead = in;
-            if (ahead.word_on_line() != "TextureFile") continue;
-            std::string_view name = ahead.rest_of_line();
-            name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
-            header.textures.push_back(name);
-        } else if (keyword != "obj_info" && !keyword.empty()) {
-            return bad_header(line, "unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
-        }
-    }
-    return Error{Stage::kInput, "its PLY header has no end (is the file cut short?)"};
-}
-
-// Reads the values of the body one by one. Reading past the end sets `failed`.
-class Body {
-  public:
-    Body(std::string_view text, Encoding encoding) : text_(text), scanner_(text), encoding_(encoding) {}
-
-    double next(Scalar type) {
-        if (encoding_ == Encoding::kAscii) {
-            const std::optional<double> value = parse_real(scanner_.word());
-            if (!value) failed = true;
-            return value.value_or(0);
-        }
-        const size_t size = size_of(type);
-        if (size > text_.size() - position_) {
-            failed = true;
-            return 0;
-        }
-        std::array<char, 8> bytes = {};
-        std::copy_n(text_.data() + position_, size, bytes.begin());
-        if (encoding_ == Encoding::kBigEndian) {
-            std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-        }
-        position_ += size;
-        switch (type) {
-            case Scalar::kNone:
-                break;
-            case Scalar::kI8:
-                return load<int8_t>(bytes.data());
-            case Scalar::kU8:
-                return load<uint8_t>(bytes.data());
-            case Scalar::kI16:
-                return load<int16_t>(bytes.data());
-            case Scalar::kU16:
-                return load<uint16_t>(bytes.data());
-            case Scalar::kI32:
-                return load<int32_t>(bytes.data());
-            case Scalar::kU32:
-                return load<uint32_t>(bytes.data());
-            case Scalar::kF32:
-                return static_cast<double>(load<float>(bytes.data()));
-            case Scalar::kF64:
-                return load<double>(bytes.data());
-        }
-        return 0;
-    }
-
-    // Reads the length of a list. Fails before anything is stored if the rest of the file cannot hold the list.
-    size_t next_length(const Property& list) {
-        const double length = next(list.count_type);
-        const size_t left = encoding_ == Encoding::kAscii ? text_.size() - scanner_.offset() : text_.size() - position_;
-        const size_t least = encoding_ == Encoding::kAscii ? 1 : std::max<size_t>(size_of(list.type), 1);
-        const size_t most = left / least;
-        if (!(length >= 0) || length > static_cast<double>(most)) failed = true;
-        return failed ? 0 : static_cast<size_t>(length);
-    }
-
-    bool failed = false;
-
-  private:
-    std::string_view text_;
-    TextScanner scanner_;
-    Encoding encoding_;
-    size_t position_ = 0;
-};
-
-// Returns the least number of bytes of one record. Its lists count as empty.
-size_t least_size(const Element& element, Encoding encoding) {
-    size_t size = 0;
-    for (const Property& property : element.properties) {
-        const Scalar first = property.count_type == Scalar::kNone ? property.type : property.count_type;
-        size += encoding == Encoding::kAscii ? 2 : size_of(first);
-    }
-    return size;
-}
+using namespace ply;
 
 int64_t as_index(double value) {
     // NaN, fractions and numbers beyond any index become -1, which no vertex has.
@@ -242,18 +44,27 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
         std::string_view name;
         Role role;
     };
-    static constexpr std::array<Entry, 12> kVertexRoles = {{{"x", Role::kX},
-                                                            {"y", Role::kY},
-                                                            {"z", Role::kZ},
-                                                            {"red", Role::kRed},
-                                                            {"green", Role::kGreen},
-                                                            {"blue", Role::kBlue},
-                                                            {"u", Role::kU},
-                                                            {"v", Role::kV},
-                                                            {"s", Role::kU},
-                                                            {"t", Role::kV},
-                                                            {"texture_u", Role::kU},
-                                                            {"texture_v", Role::kV}}};
+    static constexpr std::array<Entry, 9> kVertexRoles = {{{"x", Role::kX},
+                                                           {"y", Role::kY},
+                                                           {"z", Role::kZ},
+                                                           {"u", Role::kU},
+                                                           {"v", Role::kV},
+                                                           {"s", Role::kU},
+                                                           {"t", Role::kV},
+                                                           {"texture_u", Role::kU},
+                                                           {"texture_v", Role::kV}}};
+    static constexpr std::array<Entry, 9> kColorRoles = {{{"red", Role::kRed},
+                                                          {"green", Role::kGreen},
+                                                          {"blue", Role::kBlue},
+                                                          {"diffuse_red", Role::kRed},
+                                                          {"diffuse_green", Role::kGreen},
+                                                          {"diffuse_blue", Role::kBlue},
+                                                          {"r", Role::kRed},
+                                                          {"g", Role::kGreen},
+                                                          {"b", Role::kBlue}}};
+    for (const Entry& entry : kColorRoles) {
+        if (wants_colors && equals_ignoring_case(name, entry.name)) return entry.role;
+    }
     if (!is_vertex) return wants_colors && name == "texnumber" ? Role::kTexture : Role::kNone;
     for (const Entry& entry : kVertexRoles) {
         if (entry.name == name && (wants_colors || entry.role <= Role::kZ)) return entry.role;
@@ -261,15 +72,11 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
     return Role::kNone;
 }
 
-// Maps a colour channel to 0..1. Integers use the whole range of their type.
-float channel(double value, Scalar type) {
-    switch (type) {
-        case Scalar::kU8:
-            return static_cast<float>(value / 255);
-        case Scalar::kU16:
-            return static_cast<float>(value / 65535);
-        default:
-            return static_cast<float>(value);
+// Maps colours to 0..1. Bytes use the whole range of their type. Of wider types the largest value tells.
+void scale_channels(std::vector<std::array<float, 3>>& colors, Scalar type) {
+    if (type != Scalar::kU8 && type != Scalar::kI8) return scale_colors(colors);
+    for (auto& color : colors) {
+        for (float& c : color) c = (c < 0 ? c + 256 : c) / 255;  // "char" holds 128 and more as negative numbers
     }
 }
 
@@ -303,8 +110,10 @@ void add_textures(const Header& header, const std::vector<std::array<float, 2>>&
 // Which properties of an element the mesh takes.
 struct Columns {
     bool is_vertex = false, is_face = false, is_strip = false;
-    bool has_position = false, has_colors = false, has_texcoords = false;  // of vertices
-    std::vector<Role> roles;                                               // per property; kNone for lists
+    bool has_position = false, has_texcoords = false;  // of vertices
+    bool has_colors = false;                           // of vertices or faces
+    Scalar color_type = Scalar::kNone;
+    std::vector<Role> roles;  // per property; kNone for lists
 };
 
 Columns columns_of(const Element& element, bool wants_colors) {
@@ -314,11 +123,16 @@ Columns columns_of(const Element& element, bool wants_colors) {
     columns.is_strip = element.name == "tristrips";
     for (const Property& property : element.properties) {
         const bool may_have_role = property.count_type == Scalar::kNone && (columns.is_vertex || columns.is_face);
-        columns.roles.push_back(may_have_role ? role_of(property.name, columns.is_vertex, wants_colors) : Role::kNone);
+        Role role = may_have_role ? role_of(property.name, columns.is_vertex, wants_colors) : Role::kNone;
+        const bool is_color = role >= Role::kRed && role <= Role::kBlue;
+        // The first of several colours.
+        if (is_color && std::count(columns.roles.begin(), columns.roles.end(), role) > 0) role = Role::kNone;
+        if (role == Role::kRed) columns.color_type = property.type;
+        columns.roles.push_back(role);
     }
+    columns.has_colors = has_roles(columns.roles, {Role::kRed, Role::kGreen, Role::kBlue});
     if (!columns.is_vertex) return columns;
     columns.has_position = has_roles(columns.roles, {Role::kX, Role::kY, Role::kZ});
-    columns.has_colors = has_roles(columns.roles, {Role::kRed, Role::kGreen, Role::kBlue});
     columns.has_texcoords = has_roles(columns.roles, {Role::kU, Role::kV});
     return columns;
 }
@@ -327,27 +141,25 @@ Columns columns_of(const Element& element, bool wants_colors) {
 class Reader {
   public:
     // textures: null if colours are not wanted.
-    Reader(const Header& header, std::string_view body, Textures* textures)
-        : header_(header), body_(body, header.encoding), textures_(textures) {}
+    Reader(const Header& header, std::string_view body, Records records, Textures* textures)
+        : header_(header), body_(body, header.encoding, records), textures_(textures) {}
 
-    Result<void> read_element(const Element& element) {
-        const Columns columns = columns_of(element, textures_ != nullptr);
-        if (columns.is_vertex) {
-            soup_.positions.reserve(element.count);
-            has_coordinates_ = columns.has_position;
-        }
-        for (uint64_t record = 0; record < element.count; ++record) {
-            if (!read_record(element, columns)) {
-                return Error{Stage::kInput, "it ends, or has something that is not a number, in '" +
-                                                std::string(element.name.substr(0, 40)) + "' " +
-                                                std::to_string(record) + " of " + std::to_string(element.count) +
-                                                " (is the file cut short?)"};
-            }
-            if (columns.is_vertex) keep_vertex(columns);
-            if (columns.is_face && !header_.textures.empty() && textures_) keep_face_texture();
+    Result<void> read_all() {
+        for (const Element& element : header_.elements) {
+            if (least_size(element, header_.encoding) == 0) continue;  // has no properties
+            if (Result<void> read = read_element(element); !read.ok()) return read;
         }
         return {};
     }
+
+    // Words that no record took show that the lines have other numbers than the header says.
+    bool is_sound() {
+        const auto count = static_cast<int64_t>(soup_.positions.size());
+        return !body_.has_more_words() &&
+               std::all_of(soup_.corners.begin(), soup_.corners.end(), [&](int64_t c) { return c >= 0 && c < count; });
+    }
+
+    uint64_t dropped_lines() const { return body_.dropped_lines; }
 
     Result<TriangleMesh> mesh() && {
         if (!has_coordinates_) return Error{Stage::kInput, "its header has no vertices with x, y and z"};
@@ -355,10 +167,39 @@ class Reader {
         if (soup_.sizes.size() == face_texture_.size())
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
         if (soup_.vertex_colors.size() != soup_.positions.size()) soup_.vertex_colors.clear();
+        if (soup_.face_colors.size() != soup_.sizes.size()) soup_.face_colors.clear();
+        if (!soup_.vertex_colors.empty()) soup_.face_colors.clear();  // those of vertices are finer
+        scale_channels(soup_.vertex_colors, vertex_color_type_);
+        scale_channels(soup_.face_colors, face_color_type_);
         return triangulate(std::move(soup_), std::move(textures_->images));
     }
 
   private:
+    Result<void> read_element(const Element& element) {
+        const Columns columns = columns_of(element, textures_ != nullptr);
+        if (columns.is_vertex) {
+            soup_.positions.reserve(element.count);
+            has_coordinates_ = columns.has_position;
+            vertex_color_type_ = columns.color_type;
+        }
+        if (columns.is_face) face_color_type_ = columns.color_type;
+        for (uint64_t record = 0; record < element.count; ++record) {
+            if (!read_record(element, columns)) {
+                const std::string what = body_.wrong_word.empty()
+                                             ? "it ends, or has a list that is too long,"
+                                             : "it has " + describe_wrong_number(body_.wrong_word) + ", no number,";
+                return Error{Stage::kInput, what + " in '" + std::string(element.name.substr(0, 40)) + "' " +
+                                                std::to_string(record) + " of " + std::to_string(element.count) +
+                                                " (is the file cut short?)"};
+            }
+            body_.end_record();
+            if (columns.is_vertex) keep_vertex(columns);
+            if (columns.is_face && columns.has_colors) keep_color(soup_.face_colors);
+            if (columns.is_face && !header_.textures.empty() && textures_) keep_face_texture();
+        }
+        return {};
+    }
+
     // Returns false if the body ends.
     bool read_record(const Element& element, const Columns& columns) {
         values_.fill(0);
@@ -367,11 +208,7 @@ class Reader {
         for (size_t p = 0; p < element.properties.size(); ++p) {
             const Property& property = element.properties[p];
             if (property.count_type == Scalar::kNone) {
-                const Role role = columns.roles[p];
-                const double value = body_.next(property.type);
-                const bool is_color = role >= Role::kRed && role <= Role::kBlue;
-                values_[static_cast<size_t>(role)] =
-                    is_color ? static_cast<double>(channel(value, property.type)) : value;
+                values_[static_cast<size_t>(columns.roles[p])] = body_.next(property.type);
             } else {
                 read_list(property, columns);
                 if (body_.failed) return false;
@@ -401,13 +238,14 @@ class Reader {
 
     double value_of(Role role) const { return values_[static_cast<size_t>(role)]; }
 
+    void keep_color(std::vector<std::array<float, 3>>& colors) const {
+        colors.push_back({static_cast<float>(value_of(Role::kRed)), static_cast<float>(value_of(Role::kGreen)),
+                          static_cast<float>(value_of(Role::kBlue))});
+    }
+
     void keep_vertex(const Columns& columns) {
         soup_.positions.push_back({value_of(Role::kX), value_of(Role::kY), value_of(Role::kZ)});
-        if (columns.has_colors) {
-            soup_.vertex_colors.push_back({static_cast<float>(value_of(Role::kRed)),
-                                           static_cast<float>(value_of(Role::kGreen)),
-                                           static_cast<float>(value_of(Role::kBlue))});
-        }
+        if (columns.has_colors) keep_color(soup_.vertex_colors);
         if (columns.has_texcoords) {
             vertex_texcoords_.push_back(
                 {static_cast<float>(value_of(Role::kU)), static_cast<float>(1 - value_of(Role::kV))});
@@ -428,6 +266,7 @@ class Reader {
     std::vector<std::array<float, 2>> vertex_texcoords_;  // v downwards
     std::vector<uint32_t> face_texture_;                  // index into Header::textures
     bool has_coordinates_ = false;
+    Scalar vertex_color_type_ = Scalar::kNone, face_color_type_ = Scalar::kNone;
 
     // The current record.
     std::array<double, 10> values_ = {};  // by role
@@ -435,25 +274,46 @@ class Reader {
     std::vector<float> texcoords_;        // of a face
 };
 
-}  // namespace
-
-Result<TriangleMesh> read_ply(std::string_view text, Textures* textures) {
-    const Result<Header> parsed = read_header(text);
-    if (!parsed.ok()) return parsed.error();
-    const Header& header = parsed.value();
-    const std::string_view body = text.substr(header.size);
-    Reader reader(header, body, textures);
+// Counts of the header are checked before any memory is taken for them.
+Result<void> check_counts(const Header& header, std::string_view text, ReadContext& context) {
+    const size_t body_size = text.size() - header.size;
     for (const Element& element : header.elements) {
         const size_t least = least_size(element, header.encoding);
-        if (least == 0) continue;
-        if (element.count > (body.size() + 1) / least) {
+        if (least > 0 && element.count > (body_size + 1) / least) {
             return Error{Stage::kInput, "its header claims " + std::to_string(element.count) + " of '" +
                                             std::string(element.name.substr(0, 40)) + "', but the file holds only " +
                                             std::to_string(text.size()) + " bytes (is it cut short?)"};
         }
-        if (const Result<void> read = reader.read_element(element); !read.ok()) return read.error();
+        const uint64_t vertices = element.name == "vertex" ? element.count : 0;
+        const uint64_t faces = element.name == "face" ? element.count : 0;
+        if (least == 0) continue;
+        if (Result<void> fits = take_memory(vertices, 3 * faces, context); !fits.ok()) return fits;
     }
-    return std::move(reader).mesh();
+    return {};
+}
+
+}  // namespace
+
+Result<TriangleMesh> read_ply(std::string_view text, ReadContext& context) {
+    const Result<Header> parsed = read_header(text);
+    if (!parsed.ok()) return parsed.error();
+    const Header& header = parsed.value();
+    if (const Result<void> counts = check_counts(header, text, context); !counts.ok()) return counts.error();
+
+    const std::string_view body = text.substr(header.size);
+    Reader words(header, body, Records::kWords, context.textures);
+    const Result<void> read = words.read_all();
+    if (header.encoding != Encoding::kAscii || (read.ok() && words.is_sound())) {
+        return read.ok() ? std::move(words).mesh() : read.error();
+    }
+    // Perhaps lines have more numbers than the header says.
+    Reader lines(header, body, Records::kLines, context.textures);
+    if (!lines.read_all().ok() || lines.dropped_lines() == 0) {
+        return read.ok() ? std::move(words).mesh() : read.error();
+    }
+    context.warn(std::to_string(lines.dropped_lines()) +
+                 " lines have more numbers than the header says; those at their ends are left out");
+    return std::move(lines).mesh();
 }
 
 }  // namespace gim

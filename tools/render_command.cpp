@@ -68,11 +68,12 @@ int run_render(const RenderCommand& command) {
     if (extension_of(command.output) != "png") return report_error(command.output, {Stage::kWrite, "must end in .png"});
     const Result<void> writable = check_writable(command.output);
     if (!writable.ok()) return report_error(command.output, writable.error());
-    const Result<TriangleMesh> mesh = read_surface(command.input, command.gim.empty() ? command.level : 0);
+    const uint32_t level = command.gim.empty() ? command.level : 0;
+    const Result<TriangleMesh> mesh = read_surface_aloud(command.input, level, command.max_memory);
     if (!mesh.ok()) return report_error(command.input, mesh.error());
     std::optional<TriangleMesh> reference;
     if (!command.defects.empty()) {
-        Result<TriangleMesh> read = read_surface(command.defects, 0);
+        Result<TriangleMesh> read = read_surface_aloud(command.defects, 0, command.max_memory);
         if (!read.ok()) return report_error(command.defects, read.error());
         reference = std::move(read.value());
     }

@@ -74,15 +74,20 @@ std::vector<uint8_t> png16_bytes(const uint16_t* rgb, uint32_t width, uint32_t h
     return bytes;
 }
 
+uint64_t pixels_in_picture(std::span<const uint8_t> file) {
+    int width = 0, height = 0, channels = 0;
+    if (file.size() > INT32_MAX) return 0;
+    if (stbi_info_from_memory(file.data(), static_cast<int>(file.size()), &width, &height, &channels) == 0) return 0;
+    return static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+}
+
 DecodedPicture decode_picture(std::span<const uint8_t> file) {
-    constexpr int64_t kMostPixels = int64_t{1} << 28;
+    constexpr uint64_t kMostPixels = uint64_t{1} << 28;
     DecodedPicture picture;
-    if (file.size() > INT32_MAX) return picture;
+    const uint64_t pixel_count = pixels_in_picture(file);
+    if (pixel_count == 0 || pixel_count > kMostPixels) return picture;
     const int size = static_cast<int>(file.size());
     int width = 0, height = 0, channels = 0;
-    if (stbi_info_from_memory(file.data(), size, &width, &height, &channels) == 0 ||
-        int64_t{width} * height > kMostPixels)
-        return picture;
     stbi_uc* pixels = stbi_load_from_memory(file.data(), size, &width, &height, &channels, 3);
     if (!pixels) return picture;
     picture.width = static_cast<uint32_t>(width);

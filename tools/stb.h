@@ -19,6 +19,8 @@ struct DecodedPicture {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
+// What the header of an image file claims, 0 if it is none.
+uint64_t pixels_in_picture(std::span<const uint8_t> file);
 DecodedPicture decode_picture(std::span<const uint8_t> file);
 
 // A text in a small fixed font, as filled boxes. Origin at the top left, capitals 7 units high.

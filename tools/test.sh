@@ -18,8 +18,19 @@ say "Tests of format and decoder under the sanitizers"
 
 configure_and_build fuzz
 shopt -s nullglob
-seeds=("$GIM_ROOT"/spec/vectors/{valid,invalid})
+# Seeds of a fuzz target: of a mesh reader those of its format, and the cases beside the repository if they are there.
+seeds_of() {
+    local format=${1%_fuzz}
+    if [ -d "$GIM_ROOT/tests/fuzz/seeds/$format" ]; then
+        printf '%s\n' "$GIM_ROOT/tests/fuzz/seeds/$format"
+        [ ! -d "$GIM_ROOT/../shared/cases" ] || printf '%s\n' "$GIM_ROOT/../shared/cases"
+    else
+        printf '%s\n' "$GIM_ROOT"/spec/vectors/{valid,invalid}
+    fi
+}
+
 while read -r target; do
+    mapfile -t seeds < <(seeds_of "$(basename "$target")")
     say "Fuzzing $(basename "$target") for $FUZZ_SECONDS s"
     corpus="$GIM_ROOT/build/fuzz/corpus/$(basename "$target")"
     mkdir -p "$corpus"

@@ -176,6 +176,27 @@ TEST_F(Cli, CompareTellsReferenceAndTestApart) {
     EXPECT_NEAR(comparison["max_to_reference"].get<double>(), 0, 1e-6);
 }
 
+TEST_F(Cli, MaxMemoryBoundsEveryCommandThatReadsAMesh) {
+    save(folder.file("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\ncurv 0 1\nf 1 2 3\n");
+    const std::string mesh = folder.file("mesh.obj");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"encode", mesh, folder.file("new.gim"), "--size", "9"},
+          std::vector<std::string>{"compare", mesh, mesh, "--samples", "1000"},
+          std::vector<std::string>{"render", mesh, folder.file("new.png"), "--size", "16"}}) {
+        std::vector<std::string> limited = command;
+        limited.insert(limited.end(), {"--max-memory", "60"});
+        const Outcome refused = gim(limited);
+        EXPECT_EQ(refused.status, 1) << command[0];
+        EXPECT_NE(refused.err.find("--max-memory"), std::string::npos) << refused.err;
+        limited.back() = "1M";
+        EXPECT_EQ(gim(limited).err.find("--max-memory"), std::string::npos) << command[0];
+        // Warnings of readers reach the user of each command.
+        EXPECT_NE(gim(limited).err.find("warning: its free-form"), std::string::npos) << command[0];
+        limited.back() = "many";
+        EXPECT_EQ(gim(limited).status, 2) << command[0];
+    }
+}
+
 TEST_F(Cli, CompareTakesTheLevelOfTheTestSurface) {
     double finer = std::numeric_limits<double>::infinity();
     for (const char* level : {"0", "1", "2"}) {

@@ -15,7 +15,8 @@ using test::to_bytes;
 
 Result<TriangleMesh> read(std::string_view content, std::string_view extension) {
     const Bytes bytes = to_bytes(content);
-    return read_mesh(bytes, detect_format(bytes, extension), "");
+    ReadContext context;
+    return read_mesh(bytes, detect_format(bytes, extension), context);
 }
 
 std::string message(std::string_view content, std::string_view extension) {

@@ -33,7 +33,7 @@ void save_png(const std::string& path) {
 }
 
 Input read_colored(const std::string& path) {
-    Result<Input> input = read_input(path, Want::kShapeAndColors);
+    Result<Input> input = read_input(path, {Want::kShapeAndColors});
     EXPECT_TRUE(input.ok()) << input.error().message;
     return input.ok() ? std::move(input.value()) : Input{};
 }
@@ -109,14 +109,14 @@ TEST(Colors, AMissingTextureIsAWarning) {
 TEST(Colors, ObjTakesOptionsOfItsMapsAndPartsWithoutOne) {
     TemporaryFolder folder;
     save_png(folder.file("t.png"));
-    save(folder.file("a.mtl"), "newmtl plain\nKd 1 0 0\nnewmtl map\nmap_Kd -s 1 1 1 t.png\n");
+    save(folder.file("a.mtl"), "newmtl plain\nKd 0 1 0\nnewmtl map\nmap_Kd -s 1 1 1 t.png\n");
     save(folder.file("a.obj"),
          "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0.25 0.75\nusemtl plain\nf 1 2 3\nusemtl map\nf 2/1 "
          "4/-1 3/1\n");
     const Input input = read_colored(folder.file("a.obj"));
     EXPECT_EQ(input.mesh.appearance.triangle_texture, (std::vector<uint32_t>{UINT32_MAX, 0}));
     const std::vector<Vec3> points = {Vec3(0.1, 0.1, 0), Vec3(0.9, 0.9, 0)};
-    EXPECT_EQ(InputColors(input.mesh).at(points), (std::vector<float>{255, 255, 255, 255, 0, 0}));
+    EXPECT_EQ(InputColors(input.mesh).at(points), (std::vector<float>{0, 255, 0, 255, 0, 0}));
 }
 
 TEST(Colors, AFileThatClaimsHugeTexturesOrBadIndicesIsReadAllTheSame) {
@@ -178,7 +178,8 @@ TEST(Planes, ColorsOfAGlbReadBackAtTheirPlaces) {
     const Result<Bytes> glb = write_surface(SurfaceFormat::kGlb, images);
     ASSERT_TRUE(glb.ok());
     Textures textures("");
-    const Result<TriangleMesh> mesh = read_mesh(glb.value(), MeshFormat::kGltf, "", &textures);
+    ReadContext context{"", &textures};
+    const Result<TriangleMesh> mesh = read_mesh(glb.value(), MeshFormat::kGltf, context);
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_TRUE(textures.warnings.empty());
     const InputColors colors(mesh.value());
@@ -202,7 +203,8 @@ TEST(Planes, PlyAndObjGiveColorsToTheirVertices) {
         const Result<Bytes> bytes = write_surface(output, images);
         ASSERT_TRUE(bytes.ok());
         Textures textures("");
-        const Result<TriangleMesh> mesh = read_mesh(bytes.value(), input, "", &textures);
+        ReadContext context{"", &textures};
+        const Result<TriangleMesh> mesh = read_mesh(bytes.value(), input, context);
         ASSERT_TRUE(mesh.ok());
         ASSERT_EQ(mesh.value().appearance.corner_colors.size(), mesh.value().triangles.size());
         const auto& t = mesh.value().triangles[5];

@@ -24,7 +24,8 @@ std::vector<DecodedImage> one_torus() { return {torus_image(9)}; }
 std::vector<DecodedImage> two_tori() { return {torus_image(9), torus_image(5, 10)}; }
 
 TriangleMesh read_back(const Bytes& bytes, MeshFormat format) {
-    const Result<TriangleMesh> mesh = read_mesh(bytes, format, "");
+    ReadContext context;
+    const Result<TriangleMesh> mesh = read_mesh(bytes, format, context);
     EXPECT_TRUE(mesh.ok()) << mesh.error().message;
     return mesh.ok() ? mesh.value() : TriangleMesh{};
 }
