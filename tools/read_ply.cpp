@@ -76,7 +76,10 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
 void scale_channels(std::vector<std::array<float, 3>>& colors, Scalar type) {
     if (type != Scalar::kU8 && type != Scalar::kI8) return scale_colors(colors);
     for (auto& color : colors) {
-        for (float& c : color) c = (c < 0 ? c + 256 : c) / 255;  // "char" holds 128 and more as negative numbers
+        for (float& c : color) {
+            if (c < 0) c += 256;                      // "char" holds 128 and more as negative numbers
+            c = c > 0 ? std::min(c / 255, 1.0f) : 0;  // a text may hold anything
+        }
     }
 }
 

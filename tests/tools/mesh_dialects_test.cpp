@@ -366,6 +366,8 @@ std::string colored_ply(const std::string& type, const std::string& color, const
 TEST(PlyDialects, ColorsHaveEveryTypeAndRange) {
     const Color expected = {1, 0, 0.2f};
     for (const auto& [type, color] : std::vector<std::pair<std::string, std::string>>{{"uchar", "255 0 51"},
+                                                                                      {"uchar", "2550 nan 51"},
+                                                                                      {"char", "inf -999 51"},
                                                                                       {"char", "-1 0 51"},
                                                                                       {"float", "1 0 0.2"},
                                                                                       {"float", "255 0 51"},
