@@ -1,4 +1,5 @@
 // The driver from a triangle mesh to a .gim file. Its lines are the stages. layouts.h says who makes the images.
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -55,8 +56,10 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
 
 }  // namespace
 
-Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress,
+Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& given, const Progress& progress,
                        const Observer& observer) {
+    EncodeOptions options = given;
+    options.node_side = std::min(options.node_side, options.side);  // an image cannot be finer than itself
     GIM_CHECK(check_options(options));
     return guarded(options.threads, [&] { return run_stages(mesh, options, progress, observer); });
 }

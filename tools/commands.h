@@ -1,18 +1,21 @@
 // The subcommands of the gim program. Each takes its parsed options and returns the exit status, 0 or 1. Results go to
-// stdout, errors to stderr.
+// stdout, errors to stderr. A file name may be "-": standard input or output (named_file.h).
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "gim/encoder.h"
+#include "tools/named_file.h"
 
 namespace gim {
 
 struct EncodeCommand {
     std::string input, output;
     EncodeOptions options;
-    std::string json;          // file for the report; empty: none; "-": stdout
+    std::string format;        // of the mesh: an extension; empty: what its content or name tells
+    std::string json;          // file for the report; empty: none
     std::string debug_folder;  // empty: no pictures
     bool quiet = false;
 };
@@ -20,6 +23,7 @@ int run_encode(const EncodeCommand& command);
 
 struct DecodeCommand {
     std::string input, output;
+    std::string format;  // an extension; empty: that of the output
     uint32_t level = 0;
     bool fused = false;
     std::string normal_map, color_map;  // .png or .exr to write; empty: none
@@ -34,6 +38,7 @@ int run_info(const InfoCommand& command);
 
 struct CompareCommand {
     std::string reference, test;
+    std::string format;  // an extension, for surfaces whose names have none that gim knows; empty: their content tells
     CompareOptions options;
     uint32_t level = 0;
     bool json = false;
@@ -42,6 +47,7 @@ int run_compare(const CompareCommand& command);
 
 struct RenderCommand {
     std::string input, output;
+    std::string format;   // as in CompareCommand
     std::string gim;      // .gim file to draw beside the input; empty: only the input
     std::string defects;  // reference; defects of the surface against it are painted; empty: none
     uint32_t level = 0;
@@ -55,6 +61,14 @@ int run_render(const RenderCommand& command);
 
 // Prints "gim: FILE: STAGE: message" on stderr; returns 1.
 int report_error(const std::string& file, const Error& error);
+int report_error(const FileError& failure);
+
+// Checks all files of a command before its work: no file has two names, each output can be written and is no companion
+// of an input.
+std::optional<FileError> check_files(std::span<const NamedFile> files);
+
+// Flushes stdout. Returns the failure if anything printed so far is lost, as on a full disk.
+std::optional<FileError> results_failure();
 
 std::string with_thousands(uint64_t number);           // 34835 -> "34,835"
 void print_line(const std::string& text);              // on stdout

@@ -71,11 +71,11 @@ double diagonal_of(const RawImage& image) {
     return std::sqrt(sum);
 }
 
-Result<Input> read_input(const std::string& path, Want want) {
-    Result<Bytes> file = read_file(path);
+Result<Input> read_input(const std::string& path, Want want, const std::string& format) {
+    Result<Bytes> file = read_named(path);
     if (!file.ok()) return file.error();
     Bytes& bytes = file.value();
-    const std::string extension = extension_of(path);
+    const std::string extension = format.empty() ? extension_of(path) : format;
 
     Input input;
     if (is_gim(bytes)) {
@@ -83,7 +83,8 @@ Result<Input> read_input(const std::string& path, Want want) {
         input.bytes = std::move(bytes);
         return input;
     }
-    input.format = detect_format(bytes, extension);
+    input.format =
+        detect_format(format.empty() ? std::span<const uint8_t>(bytes) : std::span<const uint8_t>(), extension);
     if (extension == "gim" && input.format == MeshFormat::kUnknown) {
         Result<RawImage> raw = read_raw_image(bytes);
         if (!raw.ok()) return raw.error();
@@ -101,8 +102,10 @@ Result<Input> read_input(const std::string& path, Want want) {
     return input;
 }
 
-Result<TriangleMesh> read_surface(const std::string& path, uint32_t level) {
-    Result<Input> read = read_input(path);
+Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const std::string& format) {
+    const std::string extension = extension_of(path);
+    const bool name_tells = extension == "gim" || detect_format({}, extension) != MeshFormat::kUnknown;
+    Result<Input> read = read_input(path, Want::kShape, name_tells ? std::string() : format);
     if (!read.ok()) return read.error();
     Input& input = read.value();
     switch (input.kind) {

@@ -37,12 +37,12 @@ struct Input {
     std::vector<std::string> warnings;         // one per missing texture
 };
 
-// Reads the file and decides by content, then by extension.
+// Reads the file and decides by `format` (an extension), else by content, then by extension. "-" is standard input.
 enum class Want { kShape, kShapeAndColors };
-Result<Input> read_input(const std::string& path, Want want = Want::kShape);
+Result<Input> read_input(const std::string& path, Want want = Want::kShape, const std::string& format = {});
 
 // Returns any of the three as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
-// formats that repeat them.
-Result<TriangleMesh> read_surface(const std::string& path, uint32_t level);
+// formats that repeat them. format: taken if the name has no extension that gim knows.
+Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const std::string& format = {});
 
 }  // namespace gim
