@@ -13,6 +13,7 @@
 #include "encoder/code/next_quantizer.h"
 #include "encoder/code/quantizer_bracket.h"
 #include "encoder/code/rate_target.h"
+#include "encoder/least_file.h"
 
 namespace gim {
 
@@ -85,19 +86,19 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
     return best;
 }
 
+// Returns nothing if no file is small enough.
 Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
     double fine = Values::kFinest - 1,
            coarse = Values::kCoarsest + 1;  // coarsest that is too large, finest that is not; base-2 logarithms
     Bytes best;
-    size_t smallest = SIZE_MAX;
     double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
     for (int i = 0; i < 2 * Values::kMostFiles; ++i) {
         Bytes bytes = writer.write(std::exp2(at));
-        smallest = std::min(smallest, bytes.size());
         const auto size = static_cast<double>(bytes.size());
         if (size <= budget) {
             coarse = at;
-            best = std::move(bytes);
+            GIM_TRY(is_surface, has_area(bytes));
+            if (is_surface) best = std::move(bytes);
             if (size >= (1 - Values::kBytesSlack) * budget || at <= Values::kFinest) break;
         } else {
             fine = at;
@@ -107,11 +108,6 @@ Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget
         if (bracketed && coarse - fine < 1e-4) break;
         at = bracketed ? 0.5 * (fine + coarse)
                        : std::clamp(at + (size <= budget ? -2.0 : 2.0), Values::kFinest, Values::kCoarsest);
-    }
-    if (best.empty()) {
-        return Error{Stage::kCode, std::to_string(static_cast<uint64_t>(budget)) +
-                                       " bytes are too few: the smallest file of this size of image has " +
-                                       std::to_string(smallest) + "; take a smaller --size, or allow more"};
     }
     return best;
 }
@@ -149,13 +145,36 @@ class RateSearch {
 
     Result<Bytes> run(double quantizer) {
         if (target_.kind == RateTarget::Kind::kMaxError) return code_within_error(quantizer);
+        return target_.kind == RateTarget::Kind::kBytes ? code_within_budget(quantizer) : approach_and_code(quantizer);
+    }
+
+  private:
+    Result<Bytes> approach_and_code(double quantizer) {
         if (!images_.is_fitted_to_quantizer()) return search(quantizer);
         if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
         GIM_TRY(nearer, approach(quantizer));
         return fit_to_target(nearer);
     }
 
-  private:
+    // No file is smaller than one without details. So a budget below that needs no search.
+    Result<bool> is_below_all_files() const {
+        GIM_TRY(writer, images_.writer(parameters_));
+        return target_.value < double(writer.write(std::exp2(Values::kCoarsest)).size());
+    }
+
+    Result<Bytes> code_within_budget(double quantizer) {
+        GIM_TRY(is_hopeless, is_below_all_files());
+        if (!is_hopeless) {
+            GIM_TRY(found, approach_and_code(quantizer));
+            if (!found.empty()) return found;
+        }
+        GIM_TRY(least, least_file(images_, parameters_, quantizer, clock_));
+        if (double(least.size()) <= target_.value) return least;
+        return Error{Stage::kCode, std::to_string(static_cast<uint64_t>(target_.value)) +
+                                       " bytes are too few: the smallest file of this size of image has " +
+                                       std::to_string(least.size()) + "; take a smaller --size, or allow more"};
+    }
+
     // Continues the last fit. Restarts if that one was coarser, because dropped details may not come back.
     Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {
         if (quantizer < fitted_to_ * std::exp2(-Values::kNear)) images_.restart_fit();
@@ -237,7 +256,8 @@ class RateSearch {
     static Error lost() { return {Stage::kCode, "another size of image takes fewer bytes"}; }
 
     Result<bool> meets_target(const Bytes& bytes) const {
-        if (target_.kind == RateTarget::Kind::kBytes) return double(bytes.size()) <= target_.value;
+        if (target_.kind == RateTarget::Kind::kBytes)
+            return double(bytes.size()) <= target_.value ? has_area(bytes) : Result<bool>(false);
         GIM_TRY(comparison, compare_file(bytes, reference_, full_));
         return comparison.psnr >= target_.value;
     }

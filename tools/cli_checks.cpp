@@ -32,7 +32,7 @@ CLI::Validator finite_range(double low, double high, const std::string& name) {
 
 void add_mesh_format(CLI::App* sub, std::string& format, const std::string& help) {
     sub->add_option("--format", format, help)
-        ->check(CLI::IsMember({"ply", "obj", "off", "stl", "gltf", "glb", "gim"}, CLI::ignore_case).description(""))
+        ->transform(CLI::IsMember({"ply", "obj", "off", "stl", "gltf", "glb", "gim"}, CLI::ignore_case).description(""))
         ->type_name("ply|obj|off|stl|gltf|glb|gim");
 }
 

@@ -47,7 +47,7 @@ Subcommand add_decode(CLI::App& app) {
     sub->add_option("OUT", c.output, std::string("File to write: ") + kExtensions + " (-: standard output)")
         ->required();
     sub->add_option("--format", c.format, "Format of OUT. Default: its extension")
-        ->check(CLI::IsMember({"ply", "obj", "off", "stl", "glb", "exr"}, CLI::ignore_case).description(""))
+        ->transform(CLI::IsMember({"ply", "obj", "off", "stl", "glb", "exr"}, CLI::ignore_case).description(""))
         ->type_name("ply|obj|off|stl|glb|exr");
     sub->final_callback([command] { check_format(*command); });
     sub->add_option("--level", c.level, "Level to decode. 0: full resolution; each next level halves the sides")

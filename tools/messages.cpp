@@ -30,7 +30,7 @@ std::optional<FileError> results_failure() {
     const bool flushed = std::fflush(stdout) == 0;
     const int cause = errno;
     if (flushed && std::ferror(stdout) == 0) return {};
-    const std::string why = cause != 0 ? reason(cause) : "is the disk full?";
+    const std::string why = cause != 0 ? reason(cause) : "the stream does not take them";
     return FileError{"standard output", {Stage::kWrite, "cannot write the results: " + why}};
 }
 

@@ -23,8 +23,10 @@ Result<void> write_in_place(const std::string& name, std::span<const uint8_t> by
     return {};
 }
 
-// Opens the file, because access() is wrong about some network folders. Changes nothing.
-Result<void> check_existing(const fs::path& target) {
+// Nobody's permission to write is a wish, so root heeds it too. Else opens the file, because access() is wrong about some
+// network folders. Changes nothing.
+Result<void> check_existing(const fs::path& target, mode_t mode) {
+    if ((mode & 0222U) == 0) return cannot_write(EACCES);
     const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (file.get() < 0) return cannot_write(errno);
     return {};
@@ -50,7 +52,7 @@ Result<void> check_writable(const std::string& path) {
     if (::lstat(target.c_str(), &info) == 0) {
         if (S_ISDIR(info.st_mode)) return cannot_write(EISDIR);
         if (S_ISLNK(info.st_mode)) return cannot_write(ELOOP);
-        const Result<void> open = check_existing(target);
+        const Result<void> open = check_existing(target, info.st_mode);
         if (!open.ok()) return open.error();
     } else if (errno != ENOENT) {
         return cannot_write(errno);

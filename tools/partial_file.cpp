@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <random>
 
@@ -15,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostNames = 100;  // tries
-constexpr size_t kMostNameLength = 255;
+constexpr long kUsualNameLength = 255;
 
 std::string random_letters(size_t count) {
     constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
@@ -26,10 +25,21 @@ std::string random_letters(size_t count) {
     return text;
 }
 
+// Cuts the name to that many bytes, between two characters of UTF-8.
+std::string shortened(std::string name, size_t most) {
+    if (name.size() <= most) return name;
+    while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xC0U) == 0x80U) --most;
+    name.resize(most);
+    return name;
+}
+
 std::string temporary_beside(const fs::path& target) {
+    const fs::path folder = folder_of(target);
+    const long limit = ::pathconf(folder.c_str(), _PC_NAME_MAX);
     const std::string end = ".gim-partial-" + random_letters(6);
-    const std::string name = target.filename().string().substr(0, kMostNameLength - end.size() - 1);
-    return (folder_of(target) / ("." + name + end)).string();
+    const auto most = static_cast<size_t>(limit > 0 ? limit : kUsualNameLength);
+    const size_t room = most > end.size() ? most - end.size() - 1 : 0;
+    return (folder / ("." + shortened(target.filename().string(), room) + end)).string();
 }
 
 std::string advice(int error) {
@@ -78,6 +88,7 @@ Result<std::unique_ptr<PartialFile>> PartialFile::beside(fs::path target) {
         Descriptor file(::open(partial->path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
         if (file.get() >= 0) {
             partial->file_.emplace(std::move(file));
+            partial->is_there_ = true;
             return partial;
         }
         if (errno != EEXIST) return cannot_write(errno);
@@ -86,23 +97,24 @@ Result<std::unique_ptr<PartialFile>> PartialFile::beside(fs::path target) {
 }
 
 PartialFile::~PartialFile() {
-    if (file_) ::unlink(path_.c_str());
+    if (is_there_) ::unlink(path_.c_str());
 }
 
 Result<void> PartialFile::write(std::span<const uint8_t> bytes) {
     if (!write_all(file_->get(), bytes)) return cannot_write(errno);
-    return {};
-}
-
-Result<void> PartialFile::take_name() {
     struct stat old = {};
     if (::stat(target_.c_str(), &old) == 0) {
         // The owner first, because a change of owner takes permissions away.
         if (::fchown(file_->get(), old.st_uid, old.st_gid) != 0 && errno != EPERM) return cannot_write(errno);
         if (::fchmod(file_->get(), old.st_mode & 0777U) != 0) return cannot_write(errno);
     }
-    if (!file_->close_now() || std::rename(path_.c_str(), target_.c_str()) != 0) return cannot_write(errno);
-    file_.reset();
+    if (!file_->close_now()) return cannot_write(errno);
+    return {};
+}
+
+Result<void> PartialFile::take_name() {
+    if (std::rename(path_.c_str(), target_.c_str()) != 0) return cannot_write(errno);
+    is_there_ = false;
     return {};
 }
 

@@ -24,8 +24,9 @@ class PartialFile {
     PartialFile& operator=(const PartialFile&) = delete;
     ~PartialFile();  // removes the file unless it has its name
 
+    // Writes all bytes of the file. It takes the permissions of an old target, and its owner as far as the system allows.
     Result<void> write(std::span<const uint8_t> bytes);
-    // Replaces the target. Keeps its permissions, and its owner as far as the system allows.
+    // Replaces the target.
     Result<void> take_name();
 
   private:
@@ -35,7 +36,8 @@ class PartialFile {
     std::filesystem::path target_;
     std::string path_;
     std::optional<RemovedOnSignal> removed_on_signal_;  // from before the file is made
-    std::optional<Descriptor> file_;
+    std::optional<Descriptor> file_;                    // open until it is written
+    bool is_there_ = false;
 };
 
 bool write_all(int fd, std::span<const uint8_t> bytes);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <utility>
 
 namespace gim {
@@ -70,6 +71,8 @@ void prepare_process() {
     open_if_closed(STDIN_FILENO, O_WRONLY);
     open_if_closed(STDOUT_FILENO, O_RDONLY);
     open_if_closed(STDERR_FILENO, O_WRONLY);
+    // The reason of a failure is lost if it comes before the last flush.
+    if (::isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, size_t{1} << 20);
     handle(SIGXFSZ, SIG_IGN);
     for (int signal = 1; signal <= SIGRTMAX; ++signal) {
         if (ends_a_program(signal)) handle(signal, Removal::remove_all);

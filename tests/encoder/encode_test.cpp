@@ -336,7 +336,7 @@ TEST(Encode, WrongOptionsAreRefused) {
         return !encode(mesh, options).ok();
     };
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.side = 256; }));
-    EXPECT_TRUE(refused([](EncodeOptions& o) { o.node_side = 129; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.node_side = 128; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 7; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 21; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.rate = {RateTarget::Kind::kQuality, 101}; }));
