@@ -15,6 +15,7 @@
 #include "encoder/squares/best_side.h"
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/within_budget.h"
 
 namespace gim {
 
@@ -51,7 +52,11 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
         GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));
         return code_to_file(*images, cleaned.mesh, input, now, contest, clock, std::move(report));
     };
-    return best_of_sides(make_and_code, options, clock, observer);
+    return within_budget(options, [&](const EncodeOptions& now) {
+        cuts = {};
+        const bool is_first = now.rate.value == options.rate.value;
+        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+    });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <sstream>
 
 #include "tools/cli_parts.h"
 #include "tools/commands.h"
@@ -28,7 +29,12 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
         explain_several_inputs();
         return kWrongUsage;
     }
-    return app.exit(error) == 0 ? 0 : kWrongUsage;
+    // Help is a result. It goes where failures are noticed.
+    std::ostringstream help, complaint;
+    const bool is_help = app.exit(error, help, complaint) == 0;
+    std::fputs(help.str().c_str(), stdout);
+    std::fputs(complaint.str().c_str(), stderr);
+    return is_help ? 0 : kWrongUsage;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tools/commands.h"
+#include "tools/companions.h"
 #include "tools/file.h"
 #include "tools/input.h"
 #include "tools/output_files.h"
@@ -131,6 +132,10 @@ std::optional<FileError> check_names(const EncodeCommand& command) {
                          {Stage::kWrite, "this is the name of a mesh, and OUT is a .gim file; did you leave OUT out?"}};
     }
     if (command.debug_folder.empty()) return {};
+    const std::string strip = command.debug_folder + "/strip.png";
+    if (is_companion(command.input, strip)) {
+        return FileError{strip, {Stage::kWrite, "this file belongs to MESH; choose another --debug-dir"}};
+    }
     for (const NamedFile& file : files) {
         if (file.name.empty() || !StatePictures(command.debug_folder).may_replace(file.name)) continue;
         return FileError{command.debug_folder,
