@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -71,8 +72,9 @@ void prepare_process() {
     open_if_closed(STDIN_FILENO, O_WRONLY);
     open_if_closed(STDOUT_FILENO, O_RDONLY);
     open_if_closed(STDERR_FILENO, O_WRONLY);
-    // The reason of a failure is lost if it comes before the last flush.
-    if (::isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, size_t{1} << 20);
+    // The reason of a failure is lost if it comes before the last flush. So all results wait for it.
+    static std::array<char, size_t{1} << 20> results;
+    if (::isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, results.data(), _IOFBF, results.size());
     handle(SIGXFSZ, SIG_IGN);
     for (int signal = 1; signal <= SIGRTMAX; ++signal) {
         if (ends_a_program(signal)) handle(signal, Removal::remove_all);
