@@ -1,4 +1,5 @@
 // The driver from a triangle mesh to a .gim file. Its lines are the stages. layouts.h says who makes the images.
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "encoder/squares/best_side.h"
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/within_budget.h"
 
 namespace gim {
 
@@ -50,13 +52,19 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
         GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));
         return code_to_file(*images, cleaned.mesh, input, now, contest, clock, std::move(report));
     };
-    return best_of_sides(make_and_code, options, clock, observer);
+    return within_budget(options, [&](const EncodeOptions& now) {
+        cuts = {};
+        const bool is_first = now.rate.value == options.rate.value;
+        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+    });
 }
 
 }  // namespace
 
-Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, const Progress& progress,
+Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& given, const Progress& progress,
                        const Observer& observer) {
+    EncodeOptions options = given;
+    options.node_side = std::min(options.node_side, options.side);  // an image cannot be finer than itself
     GIM_CHECK(check_options(options));
     return guarded(options.threads, [&] { return run_stages(mesh, options, progress, observer); });
 }

@@ -11,6 +11,7 @@
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/squares_layout.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/within_budget.h"
 
 namespace gim {
 namespace {
@@ -22,7 +23,7 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     GIM_TRY(image, import_image(channels, side, weld_tolerance));
 
     // The image's own surface is the reference.
-    Mesh surface = samples_as_mesh(image);
+    const Mesh surface = samples_as_mesh(image);
     EncodeReport report;
     report.input_vertices = image.positions.size();
     report.input_triangles = surface.triangles.size();
@@ -32,11 +33,13 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     options.side = image.side();
     options.node_side =
         std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side(), 5u));
-    Squares squares;
-    squares.images.push_back(std::move(image));
-    squares.surfaces.push_back(surface);
-    const auto images = squares_layout(std::move(squares), options);
-    return code_to_file(*images, std::move(surface), {}, options, {}, clock, std::move(report));
+    return within_budget(options, [&](const EncodeOptions& now) {
+        Squares squares;
+        squares.images.push_back(image);
+        squares.surfaces.push_back(surface);
+        const auto images = squares_layout(std::move(squares), now);
+        return code_to_file(*images, surface, {}, now, {}, clock, report);
+    });
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include "encoder/code/next_quantizer.h"
 #include "encoder/code/quantizer_bracket.h"
 #include "encoder/code/rate_target.h"
+#include "encoder/least_file.h"
+#include "encoder/search_files.h"
 
 namespace gim {
 
@@ -21,17 +23,8 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 using Values = RateSearchValues;
 
-// Returns the PSNR, in dB, of a file's decoded surface. Must give the same value for the same bytes.
-using JudgeFile = std::function<Result<double>(std::span<const uint8_t>)>;
-
 // Codes a file at a quantizer.
 using CodeFile = std::function<Result<Bytes>(double quantizer)>;
-
-std::string decimal(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", value);
-    return text;
-}
 
 std::string four_digits(double value) {
     char text[32];
@@ -44,91 +37,6 @@ double rounded_up(double value) {
     if (!(value > 0)) return value;
     const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
     return std::ceil(value / digit) * digit;
-}
-
-Result<Bytes> search_psnr(const FileWriter& writer, double start, double target, const JudgeFile& judge) {
-    double fine = Values::kFinest - 1,
-           coarse = Values::kCoarsest + 1;  // coarsest that is good enough, finest that is not; base-2 logarithms
-    double fine_psnr = 0, coarse_psnr = 0, best_psnr = 0;
-    Bytes best;
-    double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
-    for (int i = 0; i < Values::kMostFiles; ++i) {
-        Bytes bytes = writer.write(std::exp2(at));
-        GIM_TRY(psnr, judge(bytes));
-        best_psnr = std::max(best_psnr, psnr);
-        if (psnr >= target) {
-            // A repair of folds is a leap. So the coarsest file need not be the smallest.
-            if (best.empty() || bytes.size() < best.size()) best = std::move(bytes);
-            fine = at, fine_psnr = psnr;
-            if (psnr <= target + Values::kPsnrSlack || at >= Values::kCoarsest) break;
-        } else {
-            coarse = at, coarse_psnr = psnr;
-            if (at <= Values::kFinest) break;
-        }
-        const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
-        if (bracketed && coarse - fine < 1e-3) break;
-        if (bracketed) {
-            // Aims a little above the target, and not too near to either end.
-            const double aim = target + 0.4 * Values::kPsnrSlack;
-            const double part = std::clamp((fine_psnr - aim) / (fine_psnr - coarse_psnr), 0.1, 0.9);
-            at = fine + part * (coarse - fine);
-        } else {
-            const double step = (psnr - target) / Values::kPlainDecibelPerOctave;
-            at = std::clamp(at + (step >= 0 ? std::max(step, 0.05) : std::min(1.3 * step, -0.1)), Values::kFinest,
-                            Values::kCoarsest);
-        }
-    }
-    if (best.empty()) {
-        return Error{Stage::kCode, decimal(target) + " dB is out of reach: the samples themselves reach " +
-                                       decimal(best_psnr) + " dB; take a larger --size, or ask for less"};
-    }
-    return best;
-}
-
-Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
-    double fine = Values::kFinest - 1,
-           coarse = Values::kCoarsest + 1;  // coarsest that is too large, finest that is not; base-2 logarithms
-    Bytes best;
-    size_t smallest = SIZE_MAX;
-    double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
-    for (int i = 0; i < 2 * Values::kMostFiles; ++i) {
-        Bytes bytes = writer.write(std::exp2(at));
-        smallest = std::min(smallest, bytes.size());
-        const auto size = static_cast<double>(bytes.size());
-        if (size <= budget) {
-            coarse = at;
-            best = std::move(bytes);
-            if (size >= (1 - Values::kBytesSlack) * budget || at <= Values::kFinest) break;
-        } else {
-            fine = at;
-            if (at >= Values::kCoarsest) break;
-        }
-        const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
-        if (bracketed && coarse - fine < 1e-4) break;
-        at = bracketed ? 0.5 * (fine + coarse)
-                       : std::clamp(at + (size <= budget ? -2.0 : 2.0), Values::kFinest, Values::kCoarsest);
-    }
-    if (best.empty()) {
-        return Error{Stage::kCode, std::to_string(static_cast<uint64_t>(budget)) +
-                                       " bytes are too few: the smallest file of this size of image has " +
-                                       std::to_string(smallest) + "; take a smaller --size, or allow more"};
-    }
-    return best;
-}
-
-Result<Bytes> code_to_target(const FileWriter& writer, double first, const RateTarget& target, const JudgeFile& judge) {
-    switch (target.kind) {
-        case RateTarget::Kind::kLossless:
-        case RateTarget::Kind::kQuality:
-            return writer.write(first);
-        case RateTarget::Kind::kPsnr:
-            return search_psnr(writer, std::log2(first), target.value, judge);
-        case RateTarget::Kind::kBytes:
-            return search_bytes(writer, std::log2(first), target.value);
-        case RateTarget::Kind::kMaxError:
-            break;  // see RateSearch::code_within_error()
-    }
-    return Error{Stage::kCode, "unknown rate target"};
 }
 
 // Finds the file that meets a rate target.
@@ -149,13 +57,33 @@ class RateSearch {
 
     Result<Bytes> run(double quantizer) {
         if (target_.kind == RateTarget::Kind::kMaxError) return code_within_error(quantizer);
+        return target_.kind == RateTarget::Kind::kBytes ? code_within_budget(quantizer) : approach_and_code(quantizer);
+    }
+
+  private:
+    Result<Bytes> approach_and_code(double quantizer) {
         if (!images_.is_fitted_to_quantizer()) return search(quantizer);
         if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
         GIM_TRY(nearer, approach(quantizer));
         return fit_to_target(nearer);
     }
 
-  private:
+    // No file is smaller than one without details. So a budget below that needs no search.
+    Result<bool> is_below_all_files() const {
+        GIM_TRY(writer, images_.writer(parameters_));
+        return target_.value < double(writer.write(std::exp2(Values::kCoarsest)).size());
+    }
+
+    Result<Bytes> code_within_budget(double quantizer) {
+        if (target_.value == kFewestBytes) return least_file(images_, parameters_, quantizer, clock_);
+        const Error too_few{Stage::kCode, "no file found is small enough"};
+        GIM_TRY(is_hopeless, is_below_all_files());
+        if (is_hopeless) return too_few;
+        GIM_TRY(found, approach_and_code(quantizer));
+        if (found.empty()) return too_few;
+        return found;
+    }
+
     // Continues the last fit. Restarts if that one was coarser, because dropped details may not come back.
     Result<Bytes> fitted_file(double quantizer, CodedFit::Effort effort) {
         if (quantizer < fitted_to_ * std::exp2(-Values::kNear)) images_.restart_fit();
@@ -237,7 +165,8 @@ class RateSearch {
     static Error lost() { return {Stage::kCode, "another size of image takes fewer bytes"}; }
 
     Result<bool> meets_target(const Bytes& bytes) const {
-        if (target_.kind == RateTarget::Kind::kBytes) return double(bytes.size()) <= target_.value;
+        if (target_.kind == RateTarget::Kind::kBytes)
+            return double(bytes.size()) <= target_.value ? has_area(bytes) : Result<bool>(false);
         GIM_TRY(comparison, compare_file(bytes, reference_, full_));
         return comparison.psnr >= target_.value;
     }

@@ -19,7 +19,8 @@ namespace gim {
 //   psnr      returns the smallest file found whose PSNR is at least `value`; an Error names the best PSNR in reach
 //   error     returns the smallest file found whose largest distance is at most `value`, which is in diagonals; an Error
 //             names the distance in reach
-//   bytes     returns the best file found of at most `value` bytes; an Error names the smallest size in reach
+//   bytes     returns the best file found of at most `value` bytes, or an Error (within_budget.h); the smallest one in
+//             reach for kFewestBytes
 // Images that are fitted to their quantizer are fitted again for each quantizer; they keep the last fit. parameters:
 // planes and text. contest: a search that is sure to lose returns an Error instead. Cost: up to about 16 files, or 32 for
 // bytes and error if nothing is fitted; each fitted, decoded and compared. Constants: code/rate_target.h.

@@ -1,20 +1,24 @@
 // The subcommands of the gim program. Each takes its parsed options and returns the exit status, 0 or 1. Results go to
-// stdout, errors to stderr.
+// stdout, errors to stderr. A file name may be "-": standard input or output (named_file.h).
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "gim/encoder.h"
+#include "tools/input.h"
 #include "tools/memory_budget.h"
+#include "tools/named_file.h"
 
 namespace gim {
 
 struct EncodeCommand {
     std::string input, output;
     EncodeOptions options;
-    std::string json;          // file for the report; empty: none; "-": stdout
+    std::string format;        // of the mesh: an extension; empty: what its content or name tells
+    std::string json;          // file for the report; empty: none
     std::string debug_folder;  // empty: no pictures
     bool quiet = false;
     uint64_t max_memory = default_max_memory();  // for the mesh as read
@@ -23,6 +27,7 @@ int run_encode(const EncodeCommand& command);
 
 struct DecodeCommand {
     std::string input, output;
+    std::string format;  // an extension; empty: that of the output
     uint32_t level = 0;
     bool fused = false;
     std::string normal_map, color_map;  // .png or .exr to write; empty: none
@@ -37,6 +42,7 @@ int run_info(const InfoCommand& command);
 
 struct CompareCommand {
     std::string reference, test;
+    std::string format;  // an extension, for surfaces whose names have none that gim knows; empty: their content tells
     CompareOptions options;
     uint32_t level = 0;
     bool json = false;
@@ -46,6 +52,7 @@ int run_compare(const CompareCommand& command);
 
 struct RenderCommand {
     std::string input, output;
+    std::string format;   // as in CompareCommand
     std::string gim;      // .gim file to draw beside the input; empty: only the input
     std::string defects;  // reference; defects of the surface against it are painted; empty: none
     uint32_t level = 0;
@@ -63,7 +70,15 @@ int report_error(const std::string& file, const Error& error);
 // Prints "gim: FILE: warning: text" on stderr for each.
 void print_warnings(const std::string& file, const std::vector<std::string>& warnings);
 // Reads a surface as in tools/input.h. Prints its warnings.
-Result<TriangleMesh> read_surface_aloud(const std::string& path, uint32_t level, uint64_t max_memory);
+Result<TriangleMesh> read_surface_aloud(const std::string& path, uint32_t level, const ReadOptions& options);
+int report_error(const FileError& failure);
+
+// Checks all files of a command before its work: no file has two names, each output can be written and is no companion
+// of an input.
+std::optional<FileError> check_files(std::span<const NamedFile> files);
+
+// Flushes stdout. Returns the failure if anything printed so far is lost, as on a full disk.
+std::optional<FileError> results_failure();
 
 std::string with_thousands(uint64_t number);           // 34835 -> "34,835"
 void print_line(const std::string& text);              // on stdout

@@ -1,4 +1,5 @@
 // gim compare: measures the distances between two surfaces, the angle between their normals, and their connectivity.
+#include <array>
 #include <cstdio>
 
 #include "tools/commands.h"
@@ -52,14 +53,19 @@ std::string describe_fold(const Defects::Fold& fold) {
 }
 
 int run_compare(const CompareCommand& command) {
-    const Result<TriangleMesh> reference = read_surface_aloud(command.reference, 0, command.max_memory);
-    if (!reference.ok()) return report_error(command.reference, reference.error());
-    const Result<TriangleMesh> test = read_surface_aloud(command.test, command.level, command.max_memory);
-    if (!test.ok()) return report_error(command.test, test.error());
+    const std::array<NamedFile, 2> files = {{{"REFERENCE", command.reference}, {"TEST", command.test}}};
+    if (const auto failure = check_files(files)) return report_error(*failure);
+    const std::string reference_name = shown_name(command.reference, Direction::kRead);
+    const std::string test_name = shown_name(command.test, Direction::kRead);
+    const ReadOptions how = {Want::kShape, command.max_memory, command.format};
+    const Result<TriangleMesh> reference = read_surface_aloud(command.reference, 0, how);
+    if (!reference.ok()) return report_error(reference_name, reference.error());
+    const Result<TriangleMesh> test = read_surface_aloud(command.test, command.level, how);
+    if (!test.ok()) return report_error(test_name, test.error());
     CompareOptions options = command.options;
     options.normals = options.defects = true;
     const Result<Comparison> compared = compare(reference.value(), test.value(), options);
-    if (!compared.ok()) return report_error(command.reference + " and " + command.test, compared.error());
+    if (!compared.ok()) return report_error(reference_name + " and " + test_name, compared.error());
 
     const Comparison& c = compared.value();
     const TopologySummary reference_topology = summarize_topology(reference.value());
@@ -69,11 +75,11 @@ int run_compare(const CompareCommand& command) {
             {"reference", {{"file", command.reference}, {"topology", to_json(reference_topology)}}},
             {"test", {{"file", command.test}, {"topology", to_json(test_topology)}}},
             {"comparison", to_json(c)}};
-        print_line(document.dump(2));
+        std::fputs(json_text(document).c_str(), stdout);
         return 0;
     }
-    print_topology("reference", command.reference, reference_topology);
-    print_topology("test     ", command.test, test_topology);
+    print_topology("reference", reference_name, reference_topology);
+    print_topology("test     ", test_name, test_topology);
     std::printf("diagonal of the reference  %.9g\n", c.diagonal);
     std::printf("RMS reference to test      %.6g\n", c.rms_to_test);
     std::printf("RMS test to reference      %.6g\n", c.rms_to_reference);

@@ -1,10 +1,12 @@
 // gim decode: writes one level of a .gim file as a mesh or an EXR image, and its planes as pictures.
+#include <array>
 #include <filesystem>
 #include <utility>
 
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
+#include "tools/output_files.h"
 #include "tools/plane_write.h"
 #include "tools/surface_write.h"
 
@@ -14,6 +16,7 @@ namespace {
 using Images = std::vector<DecodedImage>;
 
 struct OutputFile {
+    std::string role;
     std::string path;
     Bytes bytes;
 };
@@ -44,7 +47,7 @@ Result<void> add_planes(Kind kind, const std::string& path, const Images& images
         const std::string name = path_of_image(path, i, images.size());
         Result<Bytes> bytes = write_plane(kind, plane, name);
         if (!bytes.ok()) return bytes.error();
-        files.push_back({name, std::move(bytes.value())});
+        files.push_back({kind == Kind::kNormals ? "--normal-map" : "--color-map", name, std::move(bytes.value())});
     }
     return {};
 }
@@ -62,48 +65,67 @@ Bytes material_text(const std::string& mtl_path, const std::string& color_path, 
     return {text.begin(), text.end()};
 }
 
+// Where the .mtl of an .obj goes: beside it. Empty: the command makes none.
+std::string material_path(const DecodeCommand& command, SurfaceFormat format) {
+    const bool has_folder = !is_written_in_place(command.output);
+    if (format != SurfaceFormat::kObj || command.color_map.empty() || !has_folder) return {};
+    return std::filesystem::path(command.output).replace_extension(".mtl").string();
+}
+
+// Writes all files or none. The names of several images' pictures are known only here.
+int write_all_files(const DecodeCommand& command, std::vector<OutputFile> files) {
+    std::vector<NamedFile> names = {{"IN", command.input, Direction::kRead}};
+    for (const OutputFile& file : files) names.push_back({file.role, file.path, Direction::kWrite});
+    if (const auto failure = find_clash(names)) return report_error(*failure);
+    OutputFiles outputs;
+    for (OutputFile& file : files) {
+        const Result<void> staged = outputs.stage(file.path, std::move(file.bytes));
+        if (!staged.ok()) return report_error(shown_name(file.path, Direction::kWrite), staged.error());
+    }
+    if (const auto failure = outputs.commit()) return report_error(*failure);
+    return 0;
+}
+
 }  // namespace
 
 int run_decode(const DecodeCommand& command) {
-    const std::optional<SurfaceFormat> format = surface_format_of(extension_of(command.output));
-    if (!format) {
-        return report_error(command.output, {Stage::kWrite, "unknown extension; use ply, obj, off, stl, glb or exr"});
-    }
-    for (const std::string& path : {command.output, command.normal_map, command.color_map}) {
-        if (path.empty()) continue;
-        const Result<void> writable = check_writable(path);
-        if (!writable.ok()) return report_error(path, writable.error());
-    }
+    const std::string input_name = shown_name(command.input, Direction::kRead);
+    const std::string output_name = shown_name(command.output, Direction::kWrite);
+    const std::string extension = command.format.empty() ? extension_of(command.output) : command.format;
+    const std::optional<SurfaceFormat> format = surface_format_of(extension);
+    if (!format)
+        return report_error(output_name, {Stage::kWrite, "unknown format; use ply, obj, off, stl, glb or exr"});
+    const std::string mtl = material_path(command, *format);
+    const std::array<NamedFile, 5> names = {{{"IN", command.input, Direction::kRead},
+                                             {"OUT", command.output, Direction::kWrite},
+                                             {"--normal-map", command.normal_map, Direction::kWrite},
+                                             {"--color-map", command.color_map, Direction::kWrite},
+                                             {"the .mtl beside OUT", mtl, Direction::kWrite}}};
+    if (const auto failure = check_files(names)) return report_error(*failure);
 
-    const Result<Bytes> file = read_file(command.input);
-    if (!file.ok()) return report_error(command.input, file.error());
+    const Result<Bytes> file = read_named(command.input);
+    if (!file.ok()) return report_error(input_name, file.error());
     const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes);
-    if (!images.ok()) return report_error(command.input, images.error());
+    if (!images.ok()) return report_error(input_name, images.error());
 
-    // Makes all files before it writes the first one.
     std::vector<OutputFile> files;
     if (!command.normal_map.empty()) {
         const Result<void> added = add_planes(Kind::kNormals, command.normal_map, images.value(), files);
-        if (!added.ok()) return report_error(command.input, added.error());
+        if (!added.ok()) return report_error(input_name, added.error());
     }
     SurfaceOptions options{command.fused, {}};
     if (!command.color_map.empty()) {
         const Result<void> added = add_planes(Kind::kColors, command.color_map, images.value(), files);
-        if (!added.ok()) return report_error(command.input, added.error());
-        if (*format == SurfaceFormat::kObj) {
-            const std::filesystem::path mtl = std::filesystem::path(command.output).replace_extension(".mtl");
-            options.material_file = mtl.filename().string();
-            files.push_back({mtl.string(), material_text(mtl.string(), command.color_map, images.value().size())});
-        }
+        if (!added.ok()) return report_error(input_name, added.error());
+    }
+    if (!mtl.empty()) {
+        options.material_file = std::filesystem::path(mtl).filename().string();
+        files.push_back({"the .mtl beside OUT", mtl, material_text(mtl, command.color_map, images.value().size())});
     }
     Result<Bytes> bytes = write_surface(*format, images.value(), options);
-    if (!bytes.ok()) return report_error(command.output, bytes.error());
-    files.push_back({command.output, std::move(bytes.value())});
-    for (const OutputFile& output : files) {
-        const Result<void> written = write_file(output.path, output.bytes);
-        if (!written.ok()) return report_error(output.path, written.error());
-    }
-    return 0;
+    if (!bytes.ok()) return report_error(output_name, bytes.error());
+    files.push_back({"OUT", command.output, std::move(bytes.value())});
+    return write_all_files(command, std::move(files));
 }
 
 }  // namespace gim

@@ -1,9 +1,13 @@
 // gim encode: reads a mesh (or a headerless geometry image), runs the encoder, writes the file and the figures.
+#include <array>
 #include <cstdio>
+#include <utility>
 
 #include "tools/commands.h"
+#include "tools/companions.h"
 #include "tools/file.h"
 #include "tools/input.h"
+#include "tools/output_files.h"
 #include "tools/progress.h"
 #include "tools/report_json.h"
 #include "tools/state_pictures.h"
@@ -44,8 +48,10 @@ std::string scientific(double value) {
     return text;
 }
 
-void print_report(const EncodeCommand& command, const EncodeReport& report) {
-    print_line(format_line("file", command.output));
+std::string summary(const EncodeCommand& command, const EncodeReport& report) {
+    std::string text;
+    const auto print_line = [&](const std::string& line) { text += line + "\n"; };
+    print_line(format_line("file", shown_name(command.output, Direction::kWrite)));
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
     print_line(
@@ -85,30 +91,68 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
         print_line(format_line(("  " + time.stage).c_str(), fixed(time.seconds, 2) + " s"));
     }
     print_line(format_line("all stages", fixed(report.seconds, 2) + " s"));
+    return text;
 }
 
-Result<void> write_json(const std::string& path, const std::string& text) {
-    if (path == "-") {
-        print_line(text);
-        return {};
+// The summary goes where it mixes with no file: to stdout, or to stderr if a file goes to stdout.
+FILE* summary_stream(const EncodeCommand& command) {
+    if (command.quiet) return nullptr;
+    if (is_standard_output(command.output)) return stderr;
+    return !command.json.empty() && is_standard_output(command.json) ? nullptr : stdout;
+}
+
+// Writes file and report, and prints the summary. If any of that fails, no file is there.
+int write_results(const EncodeCommand& command, Encoded encoded) {
+    OutputFiles files;
+    const auto stage = [&](const std::string& name, Bytes bytes) {
+        const Result<void> staged = files.stage(name, std::move(bytes));
+        return staged.ok() ? 0 : report_error(shown_name(name, Direction::kWrite), staged.error());
+    };
+    if (stage(command.output, std::move(encoded.bytes)) != 0) return 1;
+    if (!command.json.empty()) {
+        nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
+        document.update(to_json(encoded.report));
+        const std::string text = json_text(document);
+        if (stage(command.json, {text.begin(), text.end()}) != 0) return 1;
     }
-    const std::string line = text + "\n";
-    return write_file(path, {reinterpret_cast<const uint8_t*>(line.data()), line.size()});
+    if (FILE* const stream = summary_stream(command)) std::fputs(summary(command, encoded.report).c_str(), stream);
+    if (const auto failure = results_failure()) return report_error(*failure);
+    if (const auto failure = files.commit()) return report_error(*failure);
+    return 0;
+}
+
+// Checks everything that can fail before minutes of work.
+std::optional<FileError> check_names(const EncodeCommand& command) {
+    const std::array<NamedFile, 3> files = {{{"MESH", command.input, Direction::kRead},
+                                             {"OUT", command.output, Direction::kWrite},
+                                             {"--json", command.json, Direction::kWrite}}};
+    if (auto failure = check_files(files)) return failure;
+    if (detect_format({}, extension_of(command.output)) != MeshFormat::kUnknown) {
+        return FileError{command.output,
+                         {Stage::kWrite, "this is the name of a mesh, and OUT is a .gim file; did you leave OUT out?"}};
+    }
+    if (command.debug_folder.empty()) return {};
+    const std::string strip = command.debug_folder + "/strip.png";
+    if (is_companion(command.input, strip)) {
+        return FileError{strip, {Stage::kWrite, "this file belongs to MESH; choose another --debug-dir"}};
+    }
+    for (const NamedFile& file : files) {
+        if (file.name.empty() || !StatePictures(command.debug_folder).may_replace(file.name)) continue;
+        return FileError{command.debug_folder,
+                         {Stage::kWrite, "--debug-dir could replace " + file.role + "; choose another folder"}};
+    }
+    return {};
 }
 
 }  // namespace
 
 int run_encode(const EncodeCommand& command) {
-    // Checks this before minutes of work.
-    for (const std::string& path : {command.output, command.json}) {
-        if (path.empty() || path == "-") continue;
-        const Result<void> writable = check_writable(path);
-        if (!writable.ok()) return report_error(path, writable.error());
-    }
+    if (const auto failure = check_names(command)) return report_error(*failure);
 
-    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory});
-    if (!input.ok()) return report_error(command.input, input.error());
-    print_warnings(command.input, input.value().warnings);
+    const std::string input_name = shown_name(command.input, Direction::kRead);
+    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory, command.format});
+    if (!input.ok()) return report_error(input_name, input.error());
+    print_warnings(input_name, input.value().warnings);
 
     StatePictures pictures(command.debug_folder);
     const bool draws = !command.debug_folder.empty();
@@ -125,20 +169,8 @@ int run_encode(const EncodeCommand& command) {
         const Result<void> drawn = pictures.finish();
         if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());
     }
-    if (!encoded.ok()) return report_error(command.input, encoded.error());
-
-    const Result<void> written = write_file(command.output, encoded.value().bytes);
-    if (!written.ok()) return report_error(command.output, written.error());
-
-    const EncodeReport& report = encoded.value().report;
-    if (!command.json.empty()) {
-        nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
-        document.update(to_json(report));
-        const Result<void> reported = write_json(command.json, document.dump(2));
-        if (!reported.ok()) return report_error(command.json, reported.error());
-    }
-    if (!command.quiet && command.json != "-") print_report(command, report);
-    return 0;
+    if (!encoded.ok()) return report_error(input_name, encoded.error());
+    return write_results(command, std::move(encoded.value()));
 }
 
 }  // namespace gim

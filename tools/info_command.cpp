@@ -8,6 +8,7 @@
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
+#include "tools/report_json.h"
 
 namespace gim {
 namespace {
@@ -192,7 +193,7 @@ void print_json(const std::string& path, const Description& d) {
                                    {"text", d.text},
                                    {"problems", d.problems},
                                    {"intact", d.problems.empty()}};
-    print_line(document.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+    std::fputs(json_text(document).c_str(), stdout);
 }
 
 void print_text(const std::string& path, const Description& d) {
@@ -246,16 +247,17 @@ void print_text(const std::string& path, const Description& d) {
 }  // namespace
 
 int run_info(const InfoCommand& command) {
-    const Result<Bytes> file = read_file(command.input);
-    if (!file.ok()) return report_error(command.input, file.error());
+    const std::string name = shown_name(command.input, Direction::kRead);
+    const Result<Bytes> file = read_named(command.input);
+    if (!file.ok()) return report_error(name, file.error());
     const Result<Description> described = describe(file.value());
-    if (!described.ok()) return report_error(command.input, described.error());
+    if (!described.ok()) return report_error(name, described.error());
     const Description& description = described.value();
-    command.json ? print_json(command.input, description) : print_text(command.input, description);
+    command.json ? print_json(command.input, description) : print_text(name, description);
 
     int exit_status = 0;
     for (const std::string& problem : description.problems) {
-        exit_status = report_error(command.input, {Stage::kInput, problem});
+        exit_status = report_error(name, {Stage::kInput, problem});
     }
     return exit_status;
 }

@@ -73,15 +73,16 @@ double diagonal_of(const RawImage& image) {
 
 Result<Input> read_input(const std::string& path, const ReadOptions& options) {
     MemoryBudget memory(options.max_memory);
-    std::error_code unknown;  // of a pipe, which read_file reads all the same
+    std::error_code unknown;  // of a pipe, which read_named reads all the same
     const uint64_t size = std::filesystem::file_size(path, unknown);
     if (!unknown) {
         if (const Result<void> fits = memory.take(size, 1, "the bytes of the file"); !fits.ok()) return fits.error();
     }
-    Result<Bytes> file = read_file(path);
+    const std::string& format = options.format;
+    Result<Bytes> file = read_named(path);
     if (!file.ok()) return file.error();
     Bytes& bytes = file.value();
-    const std::string extension = extension_of(path);
+    const std::string extension = format.empty() ? extension_of(path) : format;
 
     Input input;
     if (is_gim(bytes)) {
@@ -89,7 +90,8 @@ Result<Input> read_input(const std::string& path, const ReadOptions& options) {
         input.bytes = std::move(bytes);
         return input;
     }
-    input.format = detect_format(bytes, extension);
+    input.format =
+        detect_format(format.empty() ? std::span<const uint8_t>(bytes) : std::span<const uint8_t>(), extension);
     if (extension == "gim" && input.format == MeshFormat::kUnknown) {
         Result<RawImage> raw = read_raw_image(bytes);
         if (!raw.ok()) return raw.error();
@@ -110,7 +112,11 @@ Result<Input> read_input(const std::string& path, const ReadOptions& options) {
 
 Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const ReadOptions& options,
                                   std::vector<std::string>* warnings) {
-    Result<Input> read = read_input(path, options);
+    const std::string extension = extension_of(path);
+    const bool name_tells = extension == "gim" || detect_format({}, extension) != MeshFormat::kUnknown;
+    ReadOptions told = options;
+    if (name_tells) told.format.clear();
+    Result<Input> read = read_input(path, told);
     if (!read.ok()) return read.error();
     Input& input = read.value();
     if (warnings) *warnings = std::move(input.warnings);

@@ -42,13 +42,15 @@ enum class Want { kShape, kShapeAndColors };
 struct ReadOptions {
     Want want = Want::kShape;
     uint64_t max_memory = default_max_memory();  // bytes that the file and the mesh in it may take
+    std::string format = {};                     // an extension that tells the format; empty: the content does
 };
 
-// Reads the file and decides by content, then by extension.
+// Reads the file and decides by options.format, else by content, then by extension. "-" is standard input.
 Result<Input> read_input(const std::string& path, const ReadOptions& options = {});
 
 // Returns any of the three as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
-// formats that repeat them. `warnings`: takes those of the input; null: nobody wants them.
+// formats that repeat them. options.format: taken if the name has no extension that gim knows. `warnings`: takes those
+// of the input; null: nobody wants them.
 Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const ReadOptions& options = {},
                                   std::vector<std::string>* warnings = nullptr);
 

@@ -3,8 +3,10 @@
 #include <new>
 
 #include "tools/commands.h"
+#include "tools/removal.h"
 
 int main(int argc, char** argv) {
+    gim::prepare_process();
     // Nothing throws in normal work. If memory runs out, the program must still end with a message and status 1.
     try {
         return gim::run_gim(argc, argv);

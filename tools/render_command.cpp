@@ -1,5 +1,6 @@
 // gim render: draws a mesh as a PNG, alone or beside its geometry image and reconstruction, on request with its defects.
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "tools/decoded.h"
 #include "tools/file.h"
 #include "tools/input.h"
+#include "tools/output_files.h"
 #include "tools/render.h"
 
 namespace gim {
@@ -33,7 +35,7 @@ Result<Panel> draw_surface(const TriangleMesh& surface, const std::string& capti
 
 Result<Picture> triptych(const TriangleMesh& original, const TriangleMesh* reference, const RenderCommand& command,
                          const View& view) {
-    const Result<Bytes> file = read_file(command.gim);
+    const Result<Bytes> file = read_named(command.gim);
     if (!file.ok()) return file.error();
     const Result<std::vector<DecodedImage>> decoded = decode_images(file.value(), command.level);
     if (!decoded.ok()) return decoded.error();
@@ -65,16 +67,22 @@ Result<Picture> single(const TriangleMesh& surface, const TriangleMesh* referenc
 }  // namespace
 
 int run_render(const RenderCommand& command) {
-    if (extension_of(command.output) != "png") return report_error(command.output, {Stage::kWrite, "must end in .png"});
-    const Result<void> writable = check_writable(command.output);
-    if (!writable.ok()) return report_error(command.output, writable.error());
-    const uint32_t level = command.gim.empty() ? command.level : 0;
-    const Result<TriangleMesh> mesh = read_surface_aloud(command.input, level, command.max_memory);
-    if (!mesh.ok()) return report_error(command.input, mesh.error());
+    const std::array<NamedFile, 4> files = {{{"IN", command.input},
+                                             {"--gim", command.gim},
+                                             {"--defects", command.defects},
+                                             {"OUT", command.output, Direction::kWrite}}};
+    if (const auto failure = check_files(files)) return report_error(*failure);
+    if (extension_of(command.output) != "png" && !is_written_in_place(command.output))
+        return report_error(command.output, {Stage::kWrite, "must end in .png"});
+    const std::string input_name = shown_name(command.input, Direction::kRead);
+    const std::string output_name = shown_name(command.output, Direction::kWrite);
+    const ReadOptions how = {Want::kShape, command.max_memory, command.format};
+    const Result<TriangleMesh> mesh = read_surface_aloud(command.input, command.gim.empty() ? command.level : 0, how);
+    if (!mesh.ok()) return report_error(input_name, mesh.error());
     std::optional<TriangleMesh> reference;
     if (!command.defects.empty()) {
-        Result<TriangleMesh> read = read_surface_aloud(command.defects, 0, command.max_memory);
-        if (!read.ok()) return report_error(command.defects, read.error());
+        Result<TriangleMesh> read = read_surface_aloud(command.defects, 0, how);
+        if (!read.ok()) return report_error(shown_name(command.defects, Direction::kRead), read.error());
         reference = std::move(read.value());
     }
     const View view = {.up = up_axis_named(command.up),
@@ -86,11 +94,13 @@ int run_render(const RenderCommand& command) {
     const TriangleMesh* const against = reference ? &*reference : nullptr;
     const Result<Picture> picture =
         command.gim.empty() ? single(mesh.value(), against, view) : triptych(mesh.value(), against, command, view);
-    if (!picture.ok()) return report_error(command.gim.empty() ? command.input : command.gim, picture.error());
+    if (!picture.ok())
+        return report_error(command.gim.empty() ? input_name : shown_name(command.gim, Direction::kRead),
+                            picture.error());
     const Result<Bytes> png = write_png(picture.value());
-    if (!png.ok()) return report_error(command.output, png.error());
+    if (!png.ok()) return report_error(output_name, png.error());
     const Result<void> written = write_file(command.output, png.value());
-    if (!written.ok()) return report_error(command.output, written.error());
+    if (!written.ok()) return report_error(output_name, written.error());
     return 0;
 }
 

@@ -110,4 +110,8 @@ ordered_json to_json(const EncodeReport& report) {
             {"seconds", report.seconds}};
 }
 
+std::string json_text(const ordered_json& document) {
+    return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace gim

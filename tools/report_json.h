@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "gim/encoder.h"
 
@@ -12,5 +13,8 @@ nlohmann::ordered_json to_json(const TopologySummary& topology);
 nlohmann::ordered_json to_json(const Defects& defects);
 nlohmann::ordered_json to_json(const Comparison& comparison);
 nlohmann::ordered_json to_json(const EncodeReport& report);
+
+// The document with a line end. Names of files may hold any bytes: what is not UTF-8 is replaced by U+FFFD.
+std::string json_text(const nlohmann::ordered_json& document);
 
 }  // namespace gim

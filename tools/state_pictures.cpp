@@ -1,10 +1,12 @@
 #include "tools/state_pictures.h"
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "tools/file.h"
+#include "tools/named_file.h"
 
 namespace gim {
 namespace {
@@ -20,6 +22,14 @@ Panel draw(const Snapshot& state, uint32_t pixels) {
 }
 
 }  // namespace
+
+bool StatePictures::may_replace(const std::string& name) const {
+    const std::array<NamedFile, 2> folder = {{{"", folder_}, {"", name, Direction::kWrite}}};
+    const std::array<NamedFile, 2> strip = {{{"", folder_ + "/strip.png"}, {"", name, Direction::kWrite}}};
+    if (find_clash(folder) || find_clash(strip)) return true;
+    std::error_code ignored;
+    return extension_of(name) == "png" && std::filesystem::equivalent(folder_of(target_of(name)), folder_, ignored);
+}
 
 Result<void> StatePictures::make_folder() const {
     std::error_code error;

@@ -14,6 +14,9 @@ class StatePictures {
     // make_folder() makes `folder` if it is missing. Files of the same names are overwritten.
     explicit StatePictures(std::string folder) : folder_(std::move(folder)) {}
 
+    // True if the name is that of the folder, or could be that of a picture.
+    bool may_replace(const std::string& name) const;
+
     Result<void> make_folder() const;
     // Draws each state to NN-name.png. The first failure is kept, later states are then left out.
     Observer observer();

@@ -60,6 +60,9 @@ struct RateSearchValues {
     static constexpr uint32_t kSearchSamples = 120000, kTrialSamples = 60000;
 };
 
+// A budget of bytes below all that a caller may name. Stands for the smallest file in reach.
+inline constexpr double kFewestBytes = 0.5;
+
 // Returns true if the target needs a search for the quantizer, false if the target determines it.
 bool is_searched(const RateTarget& target);
 

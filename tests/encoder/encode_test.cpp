@@ -183,6 +183,43 @@ TEST(Encode, ByteBudgetIsKeptAndUsed) {
     EXPECT_FALSE(encode(corpus::torus(60, 30, 1, 0.4), options).ok());
 }
 
+TEST(Encode, TheNodeGridFollowsASmallSize) {
+    for (const uint32_t side : {5u, 9u, 17u}) {
+        for (const uint32_t node_side : {5u, 17u, 33u}) {
+            EncodeOptions options = small_options();
+            options.side = side;
+            options.node_side = node_side;
+            const auto encoded = encode(corpus::sphere(6), options);
+            ASSERT_TRUE(encoded.ok()) << side << ", " << node_side << ": " << encoded.error().message;
+            EXPECT_EQ(encoded.value().report.side, side);
+            EXPECT_LE(encoded.value().report.node_side, side);
+        }
+    }
+}
+
+// The least size is a fact about mesh and options, not about the request.
+TEST(Encode, BudgetsThatAreTooSmallNameOneLeastSize) {
+    for (const FitStrength fit : {FitStrength::kOff, FitStrength::kAuto}) {
+        EncodeOptions options = small_options();
+        options.side = 17;
+        options.fit = fit;
+        const auto told = [&](double budget) {
+            options.rate = {RateTarget::Kind::kBytes, budget};
+            const auto encoded = encode(corpus::torus(60, 30, 1, 0.4), options);
+            EXPECT_FALSE(encoded.ok()) << budget;
+            const std::string message = encoded.ok() ? "" : encoded.error().message;
+            return std::stod("0" + message.substr(std::min(message.size(), message.find(" has ") + 5)));
+        };
+        const double least = told(1);
+        EXPECT_GT(least, 20);
+        EXPECT_EQ(told(50), least);
+        options.rate = {RateTarget::Kind::kBytes, least};
+        const auto encoded = encode(corpus::torus(60, 30, 1, 0.4), options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_LE(static_cast<double>(encoded.value().bytes.size()), least);
+    }
+}
+
 // Samples are fitted to the codec; the rate search includes that fit.
 EncodeOptions coded_options() {
     EncodeOptions options = small_options();
@@ -336,7 +373,7 @@ TEST(Encode, WrongOptionsAreRefused) {
         return !encode(mesh, options).ok();
     };
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.side = 256; }));
-    EXPECT_TRUE(refused([](EncodeOptions& o) { o.node_side = 129; }));
+    EXPECT_TRUE(refused([](EncodeOptions& o) { o.node_side = 128; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 7; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.bits = 21; }));
     EXPECT_TRUE(refused([](EncodeOptions& o) { o.rate = {RateTarget::Kind::kQuality, 101}; }));

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corpus/corpus.h"
@@ -20,11 +22,15 @@ struct Outcome {
     std::string out, err;
 };
 
-// Starts the program without a shell.
-inline Outcome gim(std::vector<std::string> arguments) {
-    const TemporaryFolder folder;
-    const std::string out = folder.file("out");
-    const std::string err = folder.file("err");
+// How the program is started. Empty names: files that Outcome returns.
+struct Start {
+    std::string in;               // becomes stdin
+    std::string out;              // becomes stdout
+    std::function<void()> ready;  // runs in the child before the program, as to set limits; calls only system functions
+};
+
+// Starts the program without a shell. Returns its process.
+inline pid_t start_gim(std::vector<std::string> arguments, const Start& start, const std::string& err) {
     arguments.insert(arguments.begin(), GIM_PROGRAM);
     std::vector<char*> argv;
     argv.reserve(arguments.size() + 1);
@@ -33,14 +39,30 @@ inline Outcome gim(std::vector<std::string> arguments) {
 
     const pid_t child = ::fork();
     if (child == 0) {
-        ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+        if (!start.in.empty()) ::dup2(::open(start.in.c_str(), O_RDONLY), STDIN_FILENO);
+        ::dup2(::open(start.out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
         ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+        if (start.ready) start.ready();
         ::execv(GIM_PROGRAM, argv.data());
         ::_exit(127);
     }
+    return child;
+}
+
+// Exit status, or minus the signal.
+inline int wait_for(pid_t child) {
     int state = 0;
     ::waitpid(child, &state, 0);
-    return {WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state), load_text(out), load_text(err)};
+    return WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state);
+}
+
+inline Outcome gim(std::vector<std::string> arguments, Start start = {}) {
+    const TemporaryFolder folder;
+    const std::string err = folder.file("err");
+    const bool keeps_out = start.out.empty();
+    if (keeps_out) start.out = folder.file("out");
+    const int status = wait_for(start_gim(std::move(arguments), start, err));
+    return {status, keeps_out ? load_text(start.out) : "", load_text(err)};
 }
 
 inline std::string obj_text(const TriangleMesh& mesh) {

@@ -204,8 +204,8 @@ struct EncodeOptions {
     uint32_t samples = 66049;  // kMcgim: largest width * height
     // kMcgim: wanted number of charts; 0: chosen by the shape. More are made if topology or flattening needs them.
     uint32_t charts = 0;
-    // kGim: side of the grid on which cut-nodes lie. All levels down to this side are closed. The encoder takes a finer
-    // grid if the cut does not fit whole units of this one.
+    // kGim: side of the grid on which cut-nodes lie; more than `side` counts as `side`. All levels down to this side are
+    // closed. The encoder takes a finer grid if the cut does not fit whole units of this one.
     uint32_t node_side = 17;
     uint32_t bits = 12;  // quantizer: bits per coordinate of the bounding box, 8..20
     RateTarget rate;

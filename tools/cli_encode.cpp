@@ -1,0 +1,211 @@
+// The command line of gim encode. The help texts are the manual.
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "tools/cli_parts.h"
+#include "tools/commands.h"
+
+namespace gim {
+namespace {
+
+// Reads "0.5", in object units, or "0.1%", of the diagonal. Returns nothing if the text is neither, or not above 0.
+std::optional<RateTarget> max_error_target(std::string_view text) {
+    RateTarget target{RateTarget::Kind::kMaxError, 0, text.ends_with('%')};
+    if (target.in_diagonals) {
+        text.remove_suffix(1);
+        while (text.ends_with(' ')) text.remove_suffix(1);
+    }
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target.value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    if (target.in_diagonals) target.value /= 100;
+    return target.value > 0 && std::isfinite(target.value) ? std::optional(target) : std::nullopt;
+}
+
+CLI::Validator max_error_validator() {
+    const auto check = [](const std::string& text) -> std::string {
+        return max_error_target(text) ? "" : "must be a length above 0, as 0.5 or 0.1%, not " + text;
+    };
+    return {check, "LENGTH"};
+}
+
+struct EncodeArguments {
+    EncodeCommand command;
+    bool lossless = false;
+    bool even = false;
+    const CLI::Option* size = nullptr;
+    std::optional<double> psnr, quality;
+    std::string max_error;
+    std::optional<uint64_t> bytes;
+    uint32_t normals = 0;
+    std::optional<uint32_t> colors;
+    std::optional<double> plane_quality;
+};
+
+// Options of an image: its layout, its size, what its samples are.
+void add_image_options(CLI::App* sub, EncodeArguments& a) {
+    static const std::map<std::string, Layout> layouts = {
+        {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
+    sub->add_option("--layout", a.command.options.layout,
+                    "gim: one square for each component; mcgim: several charts in one rectangle; tiles: a base mesh of "
+                    "quads, not available yet; auto: the encoder chooses gim or mcgim")
+        ->transform(CLI::CheckedTransformer(layouts).description(""))
+        ->type_name("gim|mcgim|tiles|auto")
+        ->default_str("gim");
+    a.size = sub->add_option(
+                    "--size", a.command.options.side,
+                    "gim: samples per side; the next size has four times the samples. Default: 257, or with --psnr, "
+                    "--max-error or --bytes a smaller size if its file is better")
+                 ->check(side_validator(9, 4097));
+    sub->add_option(
+           "--node-side", a.command.options.node_side,
+           "gim: side of the coarsest level that stays closed, at most the size. The cut's nodes lie on a grid "
+           "of this side, or on a finer one if the cut needs it")
+        ->check(side_validator(5, 4097))
+        ->capture_default_str();
+    sub->add_option("--samples", a.command.options.samples, "mcgim: most samples of the image, width * height")
+        ->check(CLI::Range(1000, 1 << 26))
+        ->capture_default_str();
+    sub->add_option("--charts", a.command.options.charts,
+                    "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
+        ->check(CLI::Range(8, 20))
+        ->capture_default_str();
+}
+
+void add_rate_options(CLI::App* sub, EncodeArguments& a) {
+    CLI::Option_group* rate = sub->add_option_group("rate", "How many bytes the samples may take (choose at most one)");
+    rate->require_option(0, 1);
+    rate->add_flag("--lossless", a.lossless, "Keep the quantized image exactly");
+    rate->add_option("--psnr", a.psnr, "At least this PSNR in dB, of the decoded surface against the mesh")
+        ->check(finite_range(1, 200, "DB"));
+    rate->add_option("--max-error", a.max_error,
+                     "At most this distance between the decoded surface and the mesh at any place, both ways: in the "
+                     "mesh's unit, or with % of the diagonal of its bounding box. Checked after decoding")
+        ->check(max_error_validator());
+    rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
+    rate->add_option("--quality", a.quality, "0 (smallest file) to 100 (finest); 10 more halve the quantizer step")
+        ->check(finite_range(0, 100, "Q"));
+}
+
+void add_fit_options(CLI::App* sub, EncodeArguments& a) {
+    static const std::map<std::string, FitStrength> fits = {{"auto", FitStrength::kAuto},
+                                                            {"none", FitStrength::kOff},
+                                                            {"stiff", FitStrength::kStiff},
+                                                            {"loose", FitStrength::kLoose}};
+    sub->add_option(
+           "--fit", a.command.options.fit,
+           "How far samples may move towards the surface. none: not at all; stiff: hardly any more bytes; loose: finds "
+           "creases; auto: loose with --lossless, else stiff. auto also fits lossy squares to their quantizer")
+        ->transform(CLI::CheckedTransformer(fits).description(""))
+        ->type_name("auto|none|stiff|loose")
+        ->default_str("auto");
+    sub->add_flag("--even", a.even, "Spread samples evenly. Default: denser where the surface curves");
+}
+
+void add_plane_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_option("--normals", a.normals,
+                    "Store a normal map of the input with this side, rounded up to 2^j+1. 0: none (default)")
+        ->check(CLI::Range(0, 4097))
+        ->type_name("N");
+    sub->add_option(
+           "--colors", a.colors,
+           "Store the input's vertex colours and textures in an image of this side, rounded up to 2^j+1. 0: none. "
+           "Default: about as fine as the input's colours, up to 1025")
+        ->check(CLI::Range(0, 4097))
+        ->type_name("N");
+    sub->add_option(
+           "--plane-quality", a.plane_quality,
+           "Quality of normal map and colours, 0 to 100 as in --quality. Both are always lossy. Default: the value of "
+           "--quality, 90 with --lossless, else 75")
+        ->check(finite_range(0, 100, "Q"));
+}
+
+// Returns the smallest side of a plane that is at least `wanted`. 0 stays 0.
+uint32_t plane_side(uint32_t wanted) {
+    if (wanted == 0) return 0;
+    uint32_t side = 5;
+    while (side < wanted) side = 2 * side - 1;
+    return side;
+}
+
+void apply_planes(EncodeArguments& a) {
+    EncodeOptions& options = a.command.options;
+    options.normal_side = plane_side(a.normals);
+    if (a.colors) options.color_side = plane_side(*a.colors);
+    options.plane_quality = a.plane_quality;
+}
+
+void apply_rate(EncodeArguments& a) {
+    a.command.options.try_smaller_sides = a.size->count() == 0;
+    RateTarget& rate = a.command.options.rate;
+    if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
+    if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};
+    if (!a.max_error.empty()) rate = max_error_target(a.max_error).value_or(rate);
+    if (a.bytes) rate = {RateTarget::Kind::kBytes, static_cast<double>(*a.bytes)};
+    if (a.quality) rate = {RateTarget::Kind::kQuality, *a.quality};
+}
+
+void add_file_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_option("MESH", a.command.input, "Mesh to read (-: standard input)")->required();
+    sub->add_option("OUT", a.command.output, ".gim file to write (-: standard output)")->required();
+    add_mesh_format(sub, a.command.format,
+                    "Format of MESH. Default: its content tells, else its extension. gim: a headerless image");
+}
+
+void add_report_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_option("--json", a.command.json, "Write every figure of the run to this file (-: standard output)")
+        ->type_name("REPORT");
+    sub->add_option("--debug-dir", a.command.debug_folder,
+                    "Write pictures of every state to this folder: the cut as it grows, the maps, the samples")
+        ->type_name("DIR");
+    sub->add_flag("--quiet", a.command.quiet, "Print no progress and no summary");
+}
+
+}  // namespace
+
+Subcommand add_encode(CLI::App& app) {
+    const auto arguments = std::make_shared<EncodeArguments>();
+    EncodeArguments& a = *arguments;
+    CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
+    sub->footer(
+        "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension. glTF is read in\n"
+        "the file's own pose: morph weights and skins apply, animations do not. Draco and meshopt are decompressed.\n"
+        "The surface must be orientable, without non-manifold edges or vertices. gim first welds duplicate vertices\n"
+        "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
+        "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
+        "size tells its side. gim imports it with the parametrization that it has.\n"
+        "Two names of one file are refused. If OUT is standard output, the summary goes to stderr.\n"
+        "Choose at most one of --lossless, --psnr, --max-error, --bytes and --quality. Default: --quality 75.\n\n"
+        "  gim encode bunny.ply bunny.gim\n"
+        "  gim encode bunny.ply bunny.gim --size 513 --psnr 70\n"
+        "  gim encode bunny.ply bunny.gim --max-error 0.5%\n"
+        "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
+        "  gim encode bunny.ply bunny.gim --size 129 --normals 512\n"
+        "  zcat bunny.ply.gz | gim encode - bunny.gim\n"
+        "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done     several meshes");
+    add_file_options(sub, a);
+    add_image_options(sub, a);
+    add_rate_options(sub, a);
+    add_fit_options(sub, a);
+    add_plane_options(sub, a);
+    sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
+    sub->add_option("--threads", a.command.options.threads,
+                    "Number of threads, 0: all cores. The bytes do not depend on it")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    add_max_memory(sub, a.command.max_memory);
+    add_report_options(sub, a);
+    return {sub, [arguments] {
+                apply_rate(*arguments);
+                apply_planes(*arguments);
+                arguments->command.options.density = !arguments->even;
+                return run_encode(arguments->command);
+            }};
+}
+
+}  // namespace gim

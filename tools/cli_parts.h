@@ -1,0 +1,32 @@
+// The parts of the command line: one function per subcommand, and the checks of option values that they share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace gim {
+
+// A subcommand and the work that it does once the command line is parsed. The work returns the exit status.
+struct Subcommand {
+    CLI::App* app = nullptr;
+    std::function<int()> run;
+};
+
+Subcommand add_encode(CLI::App& app);
+Subcommand add_decode(CLI::App& app);
+Subcommand add_info(CLI::App& app);
+Subcommand add_compare(CLI::App& app);
+Subcommand add_render(CLI::App& app);
+
+// Accepts 2^j + 1, from least to most.
+CLI::Validator side_validator(uint32_t least, uint32_t most);
+CLI::Validator finite_range(double low, double high, const std::string& name);
+
+// Adds --format for the format of a mesh that is read.
+void add_mesh_format(CLI::App* sub, std::string& format, const std::string& help);
+
+// Adds --max-memory, which bounds what the meshes that a command reads may expand to.
+void add_max_memory(CLI::App* sub, uint64_t& bytes);
+
+}  // namespace gim
