@@ -214,7 +214,8 @@ void add_decode(CLI::App& app, DecodeCommand& c) {
     sub->footer(
         "The extension chooses the format. ply, obj and off share the vertices on the cut. glb repeats them, with\n"
         "equal positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z\n"
-        "and mask.\n"
+        "and mask. Far from 0, where float32 does not do, ply, obj and off hold float64, glb a node translation, exr\n"
+        "the attribute gimOrigin; stl is rounded, with a warning.\n"
         "Colours become vertex colours (ply, obj) or the base-colour texture (glb). A normal map becomes the normal\n"
         "texture (glb).\n\n"
         "  gim decode bunny.gim bunny.ply\n"

@@ -1,4 +1,5 @@
 // gim decode: writes one level of a .gim file as a mesh or an EXR image, and its planes as pictures.
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -98,6 +99,8 @@ int run_decode(const DecodeCommand& command) {
     }
     Result<Bytes> bytes = write_surface(*format, images.value(), options);
     if (!bytes.ok()) return report_error(command.output, bytes.error());
+    const std::string warning = rounding_warning(*format, images.value());
+    if (!warning.empty()) std::fprintf(stderr, "gim: %s: warning: %s\n", command.output.c_str(), warning.c_str());
     files.push_back({command.output, std::move(bytes.value())});
     for (const OutputFile& output : files) {
         const Result<void> written = write_file(output.path, output.bytes);

@@ -3,7 +3,8 @@
 // PLY, OBJ and OFF share the vertices on the cut, so the surface is watertight by its indices. STL repeats every vertex
 // by nature. GLB repeats the samples on the cut, with equal positions and normals, because texture coordinates jump
 // there. With `fused` it leaves out texture coordinates and shares the vertices. Coordinates are float32 in every
-// format (text: shortest decimal form that reads back as the same float). Several images become objects (OBJ), nodes
+// format (text: shortest decimal form that reads back as the same float). Of images with an origin they are float64 in PLY,
+// OBJ and OFF, relative to the node's translation in GLB, relative to the attribute gimOrigin in EXR, and rounded in STL. Several images become objects (OBJ), nodes
 // (GLB), parts (EXR), or else one mesh.
 #pragma once
 
@@ -26,6 +27,9 @@ struct SurfaceOptions {
     bool fused = false;              // GLB only
     std::string material_file = {};  // OBJ only: what mtllib names; empty: none
 };
+
+// Says what a format that has float32 only does to images with an origin. Empty: nothing that a user must know.
+std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage> images);
 
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images,
                             const SurfaceOptions& options = {});
