@@ -18,8 +18,8 @@ struct Original {
     const LocalFrame& frame;
 };
 
-// Codes images to the target of the options. contest: the other sides of the square, if any. Returns the file, in object
-// space, with the completed report.
+// Codes images to the target of the options. contest: the other sides of the square, if any. Returns the file, in
+// object space, with the completed report.
 Result<Encoded> code_to_file(LayoutImages& images, Original original, const EncodeOptions& options,
                              const Contest& contest, StageClock& clock, EncodeReport report);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "tools/little_endian.h"
@@ -246,8 +247,11 @@ std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage>
             for (const double p : image.vertex(v)) most = std::max(most, std::abs(p - double{static_cast<float>(p)}));
         }
     }
-    return "STL holds 32-bit numbers: positions are rounded by up to " + shortest(most) +
-           "; ply, obj, off and glb hold them";
+    std::array<char, 100> text = {};
+    std::snprintf(text.data(), text.size(),
+                  "STL holds 32-bit numbers: positions are rounded by up to %.3g; ply, obj, off and glb hold them",
+                  most);
+    return text.data();
 }
 
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images, const SurfaceOptions& options) {

@@ -83,12 +83,19 @@ Result<void> check_extent(const TriangleMesh& mesh, uint32_t bits) {
             if (!positions.back().allFinite()) return {};
         }
     }
-    return check_extent(positions, bits, Stage::kClean, [&](size_t i) {
+    const auto name = [&](size_t i) {
         std::array<char, 96> text{};
         std::snprintf(text.data(), text.size(), "vertex %u at (%.6g, %.6g, %.6g)", vertices[i], positions[i][0],
                       positions[i][1], positions[i][2]);
         return std::string(text.data());
-    });
+    };
+    const auto is_first = [&](const Vec3& p) { return p == positions.front(); };
+    if (!positions.empty() && std::all_of(positions.begin(), positions.end(), is_first)) {
+        return Error{Stage::kClean, name(0) +
+                                        ": all other vertices lie at the same place, so there is no surface; do its "
+                                        "coordinates have too few digits?"};
+    }
+    return check_extent(positions, bits, Stage::kClean, name);
 }
 
 LocalFrame choose_frame(std::span<const Vec3> positions, uint32_t bits) {

@@ -19,15 +19,16 @@ struct LocalFrame {
     bool is_moved = false;  // false: the frame is object space
 };
 
-// Whether the format can hold positions with so many bits. The message names one that is too far from 0, or the farthest
-// one of a surface that is too large or too small for the format's steps. name(i) names position i.
+// Whether the format can hold positions with so many bits. The message names one that is too far from 0, or the
+// farthest one of a surface that is too large or too small for the format's steps. name(i) names position i.
 Result<void> check_extent(std::span<const Vec3> positions, uint32_t bits, Stage stage,
                           const std::function<std::string(size_t)>& name);
-// The same for the vertices that triangles use. Leaves it to clean() to find what is no number or no vertex.
+// The same for the vertices that triangles use, which must not all be at one place. Leaves it to clean() to find what is
+// no number or no vertex.
 Result<void> check_extent(const TriangleMesh& mesh, uint32_t bits);
 
-// Returns the frame for a surface through these points. It is moved only where binary32 rounds a coordinate by more than
-// a hundredth of a step because the surface lies many of its extents away from 0.
+// Returns the frame for a surface through these points. It is moved only where binary32 rounds a coordinate by more
+// than a hundredth of a step because the surface lies many of its extents away from 0.
 LocalFrame choose_frame(std::span<const Vec3> positions, uint32_t bits);
 
 // Moves positions from object space into the frame.

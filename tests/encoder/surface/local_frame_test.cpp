@@ -76,6 +76,8 @@ TEST(LocalFrame, WhatTheFormatCannotHoldIsRefusedByTheNameOfAVertex) {
     ASSERT_FALSE(checked.ok());
     EXPECT_NE(checked.error().message.find("vertex 7 at"), std::string::npos) << checked.error().message;
     EXPECT_NE(checked.error().message.find("-1e+60"), std::string::npos) << checked.error().message;
+    refused(placed(ball, 0, {1, 2, 3}), "same place");
+    refused(placed(ball, 1e-30, {1, 1, 1}), "same place");  // 1 + 1e-30 is 1
     // A vertex that no triangle uses does not count.
     TriangleMesh stray = ball;
     stray.positions.push_back({1e200, 0, 0});
