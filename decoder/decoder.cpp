@@ -75,7 +75,9 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     info->chunk_count = header.chunk_count;
     info->sample_count = header.sample_count;
     info->file_size = header.file_size;
-    std::copy(header.origin.begin(), header.origin.end(), info->origin);
+    info->is_relative = header.wide_origin ? 1 : 0;
+    for (size_t k = 0; k < 3; ++k)
+        info->origin[k] = header.wide_origin ? (*header.wide_origin)[k] : double{header.origin[k]};
     info->step = header.step;
     for (size_t k = 0; k < header.level_psnr.size(); ++k)
         info->level_psnr[header.level_psnr.size() - 1 - k] = 0.5f * header.level_psnr[k];

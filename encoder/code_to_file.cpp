@@ -12,18 +12,17 @@
 
 namespace gim {
 
-Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
-                             const EncodeOptions& options, const Contest& contest, StageClock& clock,
-                             EncodeReport report) {
+Result<Encoded> code_to_file(LayoutImages& images, Original original, const EncodeOptions& options,
+                             const Contest& contest, StageClock& clock, EncodeReport report) {
     Encoded encoded{{}, std::move(report)};
     images.describe(encoded.report);
-    const ReferenceSurface surface(std::move(reference), options.threads);
+    const ReferenceSurface surface(std::move(original.surface), options.threads);
     CompareOptions compare_options;
     compare_options.threads = options.threads;
     compare_options.normals = compare_options.defects = true;
 
     CodingParameters parameters;
-    const PlaneMaker plane_maker(surface.mesh(), input, options);
+    const PlaneMaker plane_maker(surface.mesh(), original.input, options);
     if (plane_maker.wants_any()) {
         clock.begin(Stage::kPlanes);
         parameters.planes = plane_maker.make(images);
@@ -33,6 +32,7 @@ Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const Triangl
     parameters.bits = options.bits;
     parameters.base_side = options.node_side;
     parameters.level_psnr = true;
+    parameters.wide_origin = original.frame.is_moved;
     GIM_TRY(bytes, search_rate(images, parameters, options, contest, surface, clock));
     encoded.bytes = std::move(bytes);
 
@@ -48,6 +48,9 @@ Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const Triangl
     encoded.report.planes = std::move(planes);
     clock.end();
 
+    const Vec3& origin = original.frame.origin;
+    if (original.frame.is_moved) encoded.bytes = move_origin(encoded.bytes, {origin.x(), origin.y(), origin.z()});
+    move_out_of(original.frame, encoded.report);
     describe_file(encoded.bytes, encoded.report);
     encoded.report.times = clock.times();
     encoded.report.seconds = clock.seconds();

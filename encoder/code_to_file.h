@@ -5,15 +5,22 @@
 #include "encoder/base/stage_clock.h"
 #include "encoder/code/contest.h"
 #include "encoder/layout/layout_images.h"
+#include "encoder/surface/local_frame.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {
 
-// Codes images to the target of the options. Compares the decoded surface with `reference`. `input`: the mesh as read,
-// which has the colours. contest: the other sides of the square, if any. Returns the file with the completed report.
-Result<Encoded> code_to_file(LayoutImages& images, Mesh reference, const TriangleMesh& input,
-                             const EncodeOptions& options, const Contest& contest, StageClock& clock,
-                             EncodeReport report);
+// What the images show, in the frame of the images.
+struct Original {
+    Mesh surface;               // clean; the decoded surface is compared with it
+    const TriangleMesh& input;  // as read: it has the colours
+    const LocalFrame& frame;
+};
+
+// Codes images to the target of the options. contest: the other sides of the square, if any. Returns the file, in
+// object space, with the completed report.
+Result<Encoded> code_to_file(LayoutImages& images, Original original, const EncodeOptions& options,
+                             const Contest& contest, StageClock& clock, EncodeReport report);
 
 }  // namespace gim

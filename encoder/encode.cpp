@@ -1,5 +1,6 @@
 // The driver from a triangle mesh to a .gim file. Its lines are the stages. layouts.h says who makes the images.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "encoder/squares/best_side.h"
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/surface/local_frame.h"
 #include "encoder/within_budget.h"
 
 namespace gim {
@@ -35,9 +37,17 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     GIM_CHECK(check_appearance(input));
 
     clock.begin(Stage::kClean);
+    GIM_CHECK(check_extent(input, options.bits));
     GIM_TRY(cleaned, clean(input, {.require_connected = false}));
     EncodeReport input_report;
     describe_input(input, cleaned, input_report);
+
+    // From here on, positions are in the frame.
+    const LocalFrame frame = choose_frame(cleaned.mesh.positions, options.bits);
+    move_into(frame, cleaned.mesh.positions);
+    const std::optional<TriangleMesh> moved = moved_into(frame, input);
+    const TriangleMesh& local_input = moved ? *moved : input;
+    const Observer local_observer = moved_out_of(frame, observer);
 
     options.rate = resolved_target(options.rate, bounding_diagonal(cleaned.mesh));
 
@@ -50,12 +60,12 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
                                          const Observer& shown) -> Result<Encoded> {
         EncodeReport report = input_report;
         GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));
-        return code_to_file(*images, cleaned.mesh, input, now, contest, clock, std::move(report));
+        return code_to_file(*images, {cleaned.mesh, local_input, frame}, now, contest, clock, std::move(report));
     };
     return within_budget(options, [&](const EncodeOptions& now) {
         cuts = {};
         const bool is_first = now.rate.value == options.rate.value;
-        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+        return best_of_sides(make_and_code, now, clock, is_first ? local_observer : Observer());
     });
 }
 

@@ -1,5 +1,6 @@
 // The driver from an existing geometry image to a .gim file.
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "encoder/base/guarded.h"
@@ -11,6 +12,7 @@
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/squares_layout.h"
 #include "encoder/surface/compare_meshes.h"
+#include "encoder/surface/local_frame.h"
 #include "encoder/within_budget.h"
 
 namespace gim {
@@ -21,6 +23,11 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     StageClock clock(progress);
     clock.begin(Stage::kInput);
     GIM_TRY(image, import_image(channels, side, weld_tolerance));
+    GIM_CHECK(check_extent(image.positions, options.bits, Stage::kInput, [&](size_t i) {
+        return "the sample at row " + std::to_string(i / image.side()) + ", column " + std::to_string(i % image.side());
+    }));
+    const LocalFrame frame = choose_frame(image.positions, options.bits);
+    move_into(frame, image.positions);
 
     // The image's own surface is the reference.
     const Mesh surface = samples_as_mesh(image);
@@ -33,12 +40,13 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     options.side = image.side();
     options.node_side =
         std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side(), 5u));
+    const TriangleMesh no_colors;
     return within_budget(options, [&](const EncodeOptions& now) {
         Squares squares;
         squares.images.push_back(image);
         squares.surfaces.push_back(surface);
         const auto images = squares_layout(std::move(squares), now);
-        return code_to_file(*images, surface, {}, now, {}, clock, report);
+        return code_to_file(*images, {surface, no_colors, frame}, now, {}, clock, report);
     });
 }
 

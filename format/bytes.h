@@ -40,6 +40,12 @@ class ByteReader {
         *value = std::bit_cast<float>(bits);
         return true;
     }
+    bool read_f64(double* value) {
+        uint32_t low = 0, high = 0;
+        if (!read_u32(&low) || !read_u32(&high)) return false;
+        *value = std::bit_cast<double>(uint64_t{high} << 32 | low);
+        return true;
+    }
     // Seven bits a byte, least significant first; bit 7 is set on all bytes but the last. The value must be below 2^42
     // and must not end in a superfluous zero byte.
     bool read_leb128(uint64_t* value) {
@@ -71,6 +77,11 @@ inline void append_u32(uint32_t value, std::vector<uint8_t>* bytes) {
     for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<uint8_t>(value >> shift));
 }
 inline void append_f32(float value, std::vector<uint8_t>* bytes) { append_u32(std::bit_cast<uint32_t>(value), bytes); }
+inline void append_f64(double value, std::vector<uint8_t>* bytes) {
+    const auto bits = std::bit_cast<uint64_t>(value);
+    append_u32(static_cast<uint32_t>(bits), bytes);
+    append_u32(static_cast<uint32_t>(bits >> 32), bytes);
+}
 inline void append_leb128(uint64_t value, std::vector<uint8_t>* bytes) {
     for (; value >= 0x80; value >>= 7) bytes->push_back(static_cast<uint8_t>(value | 0x80));
     bytes->push_back(static_cast<uint8_t>(value));

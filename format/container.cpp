@@ -11,7 +11,8 @@ namespace {
 
 constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
-constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kReservedFlags = 0xF0, kLayoutMask = 0x03;
+constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kWideOriginFlag = 0x10, kReservedFlags = 0xE0,
+                  kLayoutMask = 0x03;
 
 bool parse_chunk(ByteReader* reader, Chunk* chunk) {
     uint64_t tag = 0;
@@ -24,7 +25,10 @@ bool parse_chunk(ByteReader* reader, Chunk* chunk) {
     return reader->read_u16(&chunk->crc);
 }
 
-bool in_range(float value, float low, float high) { return value >= low && value <= high; }  // false for a NaN
+template <class Real>
+bool in_range(Real value, Real low, Real high) {
+    return value >= low && value <= high;
+}  // false for a NaN
 
 // Checks the chunks: SEAM once, then level_count times LEVL, then NRML and COLR at most once each. META may stand
 // anywhere, but once; unknown optional chunks may stand anywhere.
@@ -97,6 +101,20 @@ Status parse_rectangle(ByteReader* reader, const ContainerLimits& limits, Header
     return Status::kOk;
 }
 
+Status parse_origin(ByteReader* reader, bool is_wide, Header* header) {
+    if (is_wide) {
+        for (double& o : header->wide_origin.emplace()) {
+            if (!reader->read_f64(&o) || !in_range(o, -double{kMaxOrigin}, double{kMaxOrigin}))
+                return Status::kMalformed;
+        }
+        return Status::kOk;
+    }
+    for (float& o : header->origin) {
+        if (!reader->read_f32(&o) || !in_range(o, -kMaxOrigin, kMaxOrigin)) return Status::kMalformed;
+    }
+    return Status::kOk;
+}
+
 }  // namespace
 
 Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header) {
@@ -139,9 +157,7 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
                                                                : parse_sides(&reader, limits, file, header);
     if (shape != Status::kOk) return shape;
 
-    for (float& o : header->origin) {
-        if (!reader.read_f32(&o) || !in_range(o, -kMaxOrigin, kMaxOrigin)) return Status::kMalformed;
-    }
+    if (Status s = parse_origin(&reader, kind & kWideOriginFlag, header); s != Status::kOk) return s;
     if (!reader.read_f32(&header->step) || !in_range(header->step, kMinStep, kMaxStep)) return Status::kMalformed;
     if (header->coding == Coding::kLossy &&
         (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer) ||
@@ -173,9 +189,9 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(static_cast<uint8_t>(static_cast<uint32_t>(header.layout) |
-                                        (header.coding == Coding::kLossy ? kLossyFlag : 0) |
-                                        (header.level_psnr.empty() ? 0 : kPsnrFlag)));
+    rest.push_back(
+        static_cast<uint8_t>(static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+                             (header.level_psnr.empty() ? 0 : kPsnrFlag) | (header.wide_origin ? kWideOriginFlag : 0)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
     if (header.layout == FileLayout::kCharts) {
@@ -185,7 +201,11 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
         append_leb128(header.image_count(), &rest);
         for (const uint8_t exponent : header.side_exponents) rest.push_back(exponent);
     }
-    for (const float o : header.origin) append_f32(o, &rest);
+    if (header.wide_origin) {
+        for (const double o : *header.wide_origin) append_f64(o, &rest);
+    } else {
+        for (const float o : header.origin) append_f32(o, &rest);
+    }
     append_f32(header.step, &rest);
     if (header.coding == Coding::kLossy) {
         append_f32(header.quantizer, &rest);

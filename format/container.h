@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,7 +44,7 @@ inline constexpr uint32_t kMaxImages = 65536;
 inline constexpr uint32_t kMaxAtlasSide = 65536;
 inline constexpr uint32_t kMaxLevels = 14;
 inline constexpr uint64_t kMaxIndexSize = uint64_t{1} << 24;
-inline constexpr float kMaxOrigin = 0x1p100f;                              // greatest absolute value
+inline constexpr float kMaxOrigin = 0x1p100f;                              // greatest absolute value, of both kinds
 inline constexpr float kMinStep = 0x1p-100f, kMaxStep = 0x1p76f;           // object units per unit
 inline constexpr float kMinQuantizer = 0x1p-16f, kMaxQuantizer = 0x1p20f;  // units
 
@@ -79,6 +80,9 @@ struct Units {
 struct Header : Units {
     FileLayout layout = FileLayout::kSquares;
     Coding coding = Coding::kLossless;
+    // Where the units' origin lies in object space, if the file has a binary64 origin. Such a file stores no other
+    // origin: that of the units is 0, and decoded positions are relative to this one.
+    std::optional<std::array<double, 3>> wide_origin;
     uint32_t level_count = 0;
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into

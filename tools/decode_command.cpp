@@ -1,5 +1,6 @@
 // gim decode: writes one level of a .gim file as a mesh or an EXR image, and its planes as pictures.
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -124,6 +125,8 @@ int run_decode(const DecodeCommand& command) {
     }
     Result<Bytes> bytes = write_surface(*format, images.value(), options);
     if (!bytes.ok()) return report_error(output_name, bytes.error());
+    if (const std::string warning = rounding_warning(*format, images.value()); !warning.empty())
+        print_warnings(output_name, {warning});
     files.push_back({"OUT", command.output, std::move(bytes.value())});
     return write_all_files(command, std::move(files));
 }

@@ -31,6 +31,7 @@ gim_status decode_image(Decoder& decoder, uint32_t index, uint32_t level, Decode
     image->level = std::min(level, shape.coarsest_level);
     status = decoder.read_level(index, image->level, &shape);
     if (status != GIM_OK) return status;
+    if (decoder.info().is_relative) std::copy_n(decoder.info().origin, 3, image->origin.begin());
     image->columns = shape.width;
     image->rows = shape.height;
     const size_t samples = size_t{shape.width} * shape.height;
@@ -119,9 +120,7 @@ TriangleMesh to_mesh(const std::vector<DecodedImage>& images) {
     TriangleMesh mesh;
     for (const DecodedImage& image : images) {
         const auto base = static_cast<uint32_t>(mesh.positions.size());
-        for (size_t i = 0; i + 2 < image.positions.size(); i += 3) {
-            mesh.positions.push_back({image.positions[i], image.positions[i + 1], image.positions[i + 2]});
-        }
+        for (size_t v = 0; v < image.positions.size() / 3; ++v) mesh.positions.push_back(image.vertex(v));
         for (size_t i = 0; i + 2 < image.triangles.size(); i += 3) {
             mesh.triangles.push_back(
                 {base + image.triangles[i], base + image.triangles[i + 1], base + image.triangles[i + 2]});

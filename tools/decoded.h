@@ -1,6 +1,7 @@
 // A decoded .gim file, in the form that the writers, `compare` and `render` take.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct ImagePlane {
 struct DecodedImage {
     uint32_t columns = 0, rows = 0;
     uint32_t level = 0;
+    std::array<double, 3> origin = {};     // what all positions below are relative to; 0 unless the file needs it
     std::vector<float> grid;               // columns*rows*3, row-major; NaN where undefined
     std::vector<float> grid_normals;       // columns*rows*3
     std::vector<float> grid_texcoords;     // columns*rows*2
@@ -35,6 +37,12 @@ struct DecodedImage {
     std::vector<uint32_t> triangles;       // index fused vertices; the order is that of grid_triangles
 
     bool is_defined(size_t sample) const { return grid[3 * sample] == grid[3 * sample]; }
+    bool is_relative() const { return origin != std::array<double, 3>{}; }
+    // The position of a fused vertex in object space.
+    std::array<double, 3> vertex(size_t v) const {
+        return {origin[0] + double{positions[3 * v]}, origin[1] + double{positions[3 * v + 1]},
+                origin[2] + double{positions[3 * v + 2]}};
+    }
 };
 
 // The grid's mesh without undefined samples.

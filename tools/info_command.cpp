@@ -182,6 +182,7 @@ void print_json(const std::string& path, const Description& d) {
                                    {"step", d.info.step},
                                    {"quantizer", d.info.quantizer},
                                    {"origin", {d.info.origin[0], d.info.origin[1], d.info.origin[2]}},
+                                   {"relative", d.info.is_relative != 0},
                                    {"bytes", d.actual_size},
                                    {"index_bytes", d.info.index_size},
                                    {"samples", d.info.sample_count},
@@ -204,6 +205,8 @@ void print_text(const std::string& path, const Description& d) {
     std::printf("  %s bytes, %u image%s, %s samples, %.3f bits per sample\n", with_thousands(d.actual_size).c_str(),
                 info.image_count, info.image_count == 1 ? "" : "s", with_thousands(info.sample_count).c_str(),
                 bits_per_sample(info));
+    std::printf("  origin %.17g, %.17g, %.17g (%s)\n", info.origin[0], info.origin[1], info.origin[2],
+                info.is_relative != 0 ? "binary64; decoded positions are relative to it" : "binary32");
     if (info.level_psnr[0] > 0) {
         std::printf("  PSNR in dB, measured by the encoder:");
         for (uint32_t level = 0; level < info.level_count && info.level_psnr[level] > 0; ++level) {

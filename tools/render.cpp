@@ -147,7 +147,8 @@ Scene look_at(const TriangleMesh& mesh, const View& view, uint32_t side) {
     Scene scene;
     const Bounds bounds = bounds_of(mesh);
     const Vector3d extent = bounds.high - bounds.low;
-    const double radius = 0.5 * extent.norm();
+    double radius = 0.5 * extent.norm();
+    if (radius == 0 || std::isinf(radius)) radius = 0.5 * extent.stableNorm();  // squares left the range of doubles
     if (!(radius > 0) || !std::isfinite(radius)) return scene;
     const Matrix3d axes = camera_axes(view, extent);
     const Vector3d centre = 0.5 * (bounds.low + bounds.high);

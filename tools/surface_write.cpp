@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "tools/little_endian.h"
@@ -22,14 +23,33 @@ void append_number(Bytes& out, Number value, char before) {
     out.insert(out.end(), digits.data(), end.ptr);
 }
 
-void append_row(Bytes& out, std::string_view keyword, std::span<const float> values) {
-    append_text(out, keyword);
-    char before = keyword.empty() ? '\0' : ' ';
-    for (const float value : values) {
+template <class Number>
+void append_numbers(Bytes& out, std::span<const Number> values, char before) {
+    for (const Number value : values) {
         append_number(out, value, before);
         before = ' ';
     }
+}
+
+void append_row(Bytes& out, std::string_view keyword, std::span<const float> values) {
+    append_text(out, keyword);
+    append_numbers(out, values, ' ');
     out.push_back('\n');
+}
+
+// Appends a vertex's position as floats, or as doubles if it is relative to an origin.
+void append_position(Bytes& out, const DecodedImage& image, size_t v, char before) {
+    if (image.is_relative()) {
+        append_numbers<double>(out, image.vertex(v), before);
+    } else {
+        append_numbers<float>(out, {&image.positions[3 * v], 3}, before);
+    }
+}
+
+std::string shortest(double value) {
+    std::array<char, 40> digits = {};
+    const std::to_chars_result end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return {digits.data(), end.ptr};
 }
 
 size_t vertex_count(std::span<const DecodedImage> images) {
@@ -44,20 +64,24 @@ size_t triangle_count(std::span<const DecodedImage> images) {
     return count;
 }
 
-std::array<float, 3> vertex(const DecodedImage& image, uint32_t v) {
-    return {image.positions[3 * size_t{v}], image.positions[3 * size_t{v} + 1], image.positions[3 * size_t{v} + 2]};
+std::array<float, 3> to_floats(const std::array<double, 3>& p) {
+    return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
+
+bool is_relative(std::span<const DecodedImage> images) {
+    return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.is_relative(); });
 }
 
 std::array<float, 3> facet_normal(const DecodedImage& image, const uint32_t* triangle) {
-    const std::array<float, 3> a = vertex(image, triangle[0]);
-    const std::array<float, 3> b = vertex(image, triangle[1]);
-    const std::array<float, 3> c = vertex(image, triangle[2]);
+    const std::array<double, 3> a = image.vertex(triangle[0]);
+    const std::array<double, 3> b = image.vertex(triangle[1]);
+    const std::array<double, 3> c = image.vertex(triangle[2]);
     std::array<double, 3> normal = {};
     double squared = 0;
     for (size_t k = 0; k < 3; ++k) {
         const size_t i = (k + 1) % 3;
         const size_t j = (k + 2) % 3;
-        normal[k] = (double{b[i]} - a[i]) * (double{c[j]} - a[j]) - (double{b[j]} - a[j]) * (double{c[i]} - a[i]);
+        normal[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
         squared += normal[k] * normal[k];
     }
     const double scale = squared > 0 ? 1 / std::sqrt(squared) : 0;  // zero area: no normal; readers compute it anyway
@@ -96,9 +120,10 @@ Bytes write_ply(std::span<const DecodedImage> images) {
     out.reserve(400 + 24 * vertex_count(images) + 13 * triangle_count(images));
     append_text(out, "ply\nformat binary_little_endian 1.0\ncomment decoded by gim\nelement vertex ");
     append_text(out, std::to_string(vertex_count(images)));
-    append_text(out,
-                "\nproperty float x\nproperty float y\nproperty float z\n"
-                "property float nx\nproperty float ny\nproperty float nz\n");
+    const bool relative = is_relative(images);
+    append_text(out, relative ? "\nproperty double x\nproperty double y\nproperty double z\n"
+                              : "\nproperty float x\nproperty float y\nproperty float z\n");
+    append_text(out, "property float nx\nproperty float ny\nproperty float nz\n");
     const bool colored = has_colors(images);
     if (colored) append_text(out, "property uchar red\nproperty uchar green\nproperty uchar blue\n");
     append_text(out, "element face ");
@@ -106,7 +131,11 @@ Bytes write_ply(std::span<const DecodedImage> images) {
     append_text(out, "\nproperty list uchar int vertex_indices\nend_header\n");
     for (const DecodedImage& image : images) {
         for (size_t v = 0; v < image.positions.size(); v += 3) {
-            for (size_t k = 0; k < 3; ++k) append(out, image.positions[v + k]);
+            if (relative) {
+                append(out, image.vertex(v / 3));
+            } else {
+                for (size_t k = 0; k < 3; ++k) append(out, image.positions[v + k]);
+            }
             for (size_t k = 0; k < 3; ++k) append(out, image.normals[v + k]);
             if (colored) append(out, vertex_color(image, v / 3));
         }
@@ -134,15 +163,13 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
         append_text(out, "o image" + std::to_string(i) + "\n");
         if (!material_file.empty()) append_text(out, "usemtl image" + std::to_string(i) + "\n");
         for (size_t v = 0; v < image.positions.size(); v += 3) {
-            if (!colored) {
-                append_row(out, "v", {&image.positions[v], 3});
-                continue;
+            out.push_back('v');
+            append_position(out, image, v / 3, ' ');
+            if (colored) {
+                for (const uint8_t level : vertex_color(image, v / 3))
+                    append_number(out, static_cast<float>(level) / 255.0F, ' ');
             }
-            std::array<float, 6> row = {};
-            std::copy_n(&image.positions[v], 3, row.begin());
-            const std::array<uint8_t, 3> rgb = vertex_color(image, v / 3);
-            for (size_t k = 0; k < 3; ++k) row[3 + k] = static_cast<float>(rgb[k]) / 255.0F;
-            append_row(out, "v", row);
+            out.push_back('\n');
         }
         const GridMesh grid = grid_mesh(image);
         for (const uint32_t sample : grid.samples) {
@@ -173,7 +200,10 @@ Bytes write_off(std::span<const DecodedImage> images) {
     append_text(out,
                 "OFF\n" + std::to_string(vertex_count(images)) + " " + std::to_string(triangle_count(images)) + " 0\n");
     for (const DecodedImage& image : images) {
-        for (size_t v = 0; v < image.positions.size(); v += 3) append_row(out, "", {&image.positions[v], 3});
+        for (size_t v = 0; v < image.positions.size() / 3; ++v) {
+            append_position(out, image, v, '\0');
+            out.push_back('\n');
+        }
     }
     uint32_t base = 0;
     for (const DecodedImage& image : images) {
@@ -196,11 +226,32 @@ Bytes write_stl(std::span<const DecodedImage> images) {
     for (const DecodedImage& image : images) {
         for (size_t t = 0; t < image.triangles.size(); t += 3) {
             append(out, facet_normal(image, &image.triangles[t]));
-            for (size_t k = 0; k < 3; ++k) append(out, vertex(image, image.triangles[t + k]));
+            for (size_t k = 0; k < 3; ++k) append(out, to_floats(image.vertex(image.triangles[t + k])));
             append(out, uint16_t{0});
         }
     }
     return out;
+}
+
+std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage> images) {
+    if (!is_relative(images)) return {};
+    if (format == SurfaceFormat::kExr) {
+        std::string text = "EXR holds 32-bit numbers: X, Y and Z are relative to the attribute gimOrigin,";
+        for (const double o : images[0].origin) text += " " + shortest(o);
+        return text;
+    }
+    if (format != SurfaceFormat::kStl) return {};
+    double most = 0;
+    for (const DecodedImage& image : images) {
+        for (size_t v = 0; v < image.positions.size() / 3; ++v) {
+            for (const double p : image.vertex(v)) most = std::max(most, std::abs(p - double{static_cast<float>(p)}));
+        }
+    }
+    std::array<char, 100> text = {};
+    std::snprintf(text.data(), text.size(),
+                  "STL holds 32-bit numbers: positions are rounded by up to %.3g; ply, obj, off and glb hold them",
+                  most);
+    return text.data();
 }
 
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images, const SurfaceOptions& options) {

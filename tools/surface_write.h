@@ -2,9 +2,12 @@
 //
 // PLY, OBJ and OFF share the vertices on the cut, so the surface is watertight by its indices. STL repeats every vertex
 // by nature. GLB repeats the samples on the cut, with equal positions and normals, because texture coordinates jump
-// there. With `fused` it leaves out texture coordinates and shares the vertices. Coordinates are float32 in every
-// format (text: shortest decimal form that reads back as the same float). Several images become objects (OBJ), nodes
-// (GLB), parts (EXR), or else one mesh.
+// there. With `fused` it leaves out texture coordinates and shares the vertices. Several images become objects (OBJ),
+// nodes (GLB), parts (EXR), or else one mesh.
+//
+// Coordinates are float32 in every format (text: shortest decimal form that reads back as the same float). Those of
+// images with an origin are float64 in PLY, OBJ and OFF, relative to the node's translation in GLB, relative to the
+// attribute gimOrigin in EXR, and rounded in STL.
 #pragma once
 
 #include <array>
@@ -26,6 +29,9 @@ struct SurfaceOptions {
     bool fused = false;              // GLB only
     std::string material_file = {};  // OBJ only: what mtllib names; empty: none
 };
+
+// Says what a format that has float32 only does to images with an origin. Empty: nothing that a user must know.
+std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage> images);
 
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images,
                             const SurfaceOptions& options = {});

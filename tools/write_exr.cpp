@@ -1,4 +1,5 @@
-// OpenEXR: float32 channels X, Y, Z (with the cut closed) and mask (1 if the sample is defined). One part per image.
+// OpenEXR: float32 channels X, Y, Z (with the cut closed) and mask (1 if the sample is defined). One part per image. If
+// positions are relative to an origin, the attribute gimOrigin has it.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -7,6 +8,7 @@
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfVecAttribute.h>
 
 #include <algorithm>
 #include <exception>
@@ -44,6 +46,8 @@ Imf::Header header_of(const DecodedImage& image, const Imath::Box2i& display) {
     Imf::Header header(display, window_of(image.columns, image.rows));
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const char* name : {"X", "Y", "Z", "mask"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    const auto& o = image.origin;
+    if (image.is_relative()) header.insert("gimOrigin", Imf::V3dAttribute(Imath::V3d(o[0], o[1], o[2])));
     return header;
 }
 

@@ -158,6 +158,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
                                                        {"material", same - materials.begin()},
                                                        {"mode", 4}}})}});
         nodes.push_back({{"name", name}, {"mesh", i}});
+        if (image.is_relative()) nodes.back()["translation"] = image.origin;
         roots.push_back(i);
     }
     pad(buffer.bytes, 0);

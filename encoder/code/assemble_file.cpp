@@ -39,6 +39,22 @@ Payload make_text_payload(const std::string& text) {
     return p;
 }
 
+// Returns the file with its header changed by change(header). Returns it unchanged if that returns false.
+template <class Change>
+std::vector<uint8_t> with_header(std::span<const uint8_t> file, const Change& change) {
+    std::vector<uint8_t> changed(file.begin(), file.end());
+    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    Header header;
+    if (parse_header(file, no_limits, &header) != Status::kOk || !change(header)) return changed;
+    std::vector<Chunk> chunks;
+    ChunkWalk walk(header);
+    Chunk chunk;
+    for (uint64_t offset = 0; walk.next(&chunk, &offset);) chunks.push_back(chunk);
+    const std::vector<uint8_t> head = serialize_header(header, chunks);
+    std::copy(head.begin(), head.end(), changed.begin());
+    return changed;
+}
+
 }  // namespace
 
 std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t> seams,
@@ -58,23 +74,23 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
 }
 
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {
-    std::vector<uint8_t> changed(file.begin(), file.end());
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    Header header;
-    if (parse_header(file, no_limits, &header) != Status::kOk || header.level_psnr.size() != psnr.size())
-        return changed;
     std::vector<uint8_t> coded;
     for (size_t k = psnr.size(); k-- > 0;) {
         coded.push_back(static_cast<uint8_t>(psnr[k] > 0 ? std::min(std::floor(2 * psnr[k]), 255.0) : 0.0));
     }
-    header.level_psnr = coded;
-    std::vector<Chunk> chunks;
-    ChunkWalk walk(header);
-    Chunk chunk;
-    for (uint64_t offset = 0; walk.next(&chunk, &offset);) chunks.push_back(chunk);
-    const std::vector<uint8_t> head = serialize_header(header, chunks);
-    std::copy(head.begin(), head.end(), changed.begin());
-    return changed;
+    return with_header(file, [&](Header& header) {
+        if (header.level_psnr.size() != coded.size()) return false;
+        header.level_psnr = coded;
+        return true;
+    });
+}
+
+std::vector<uint8_t> move_origin(std::span<const uint8_t> file, const std::array<double, 3>& by) {
+    return with_header(file, [&](Header& header) {
+        if (!header.wide_origin) return false;
+        for (size_t k = 0; k < 3; ++k) (*header.wide_origin)[k] += by[k];
+        return true;
+    });
 }
 
 }  // namespace gim

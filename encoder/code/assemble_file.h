@@ -1,6 +1,7 @@
 // Turns payloads into a complete .gim file: chunks, index, checksums.  spec/gim-format.md, "File".
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,5 +25,9 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
 // Returns the file with the measured PSNR of each level (finest first, dB) in its header. The file must have room for
 // them (CodingParameters::level_psnr). Its size stays the same.
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr);
+
+// Returns the file with its binary64 origin moved. The file must have one (CodingParameters::wide_origin). Its size stays
+// the same.
+std::vector<uint8_t> move_origin(std::span<const uint8_t> file, const std::array<double, 3>& by);
 
 }  // namespace gim

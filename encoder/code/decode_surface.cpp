@@ -19,8 +19,7 @@ gim_status append_image(Decoder& decoder, uint32_t image, uint32_t level, Mesh& 
     status = decoder.mesh(size, {positions, {}, {}, triangles});
     if (status != GIM_OK) return status;
     const auto first = static_cast<uint32_t>(mesh.positions.size());
-    for (size_t v = 0; v < positions.size(); v += 3)
-        mesh.positions.emplace_back(positions[v], positions[v + 1], positions[v + 2]);
+    append_positions(decoder.info(), positions, mesh);
     for (size_t t = 0; t < triangles.size(); t += 3) {
         mesh.triangles.push_back({first + triangles[t], first + triangles[t + 1], first + triangles[t + 2]});
     }
@@ -28,6 +27,12 @@ gim_status append_image(Decoder& decoder, uint32_t image, uint32_t level, Mesh& 
 }
 
 }  // namespace
+
+void append_positions(const gim_info& info, std::span<const float> positions, Mesh& mesh) {
+    const Vec3 origin = info.is_relative ? Vec3(info.origin[0], info.origin[1], info.origin[2]) : Vec3(0, 0, 0);
+    for (size_t v = 0; v < positions.size(); v += 3)
+        mesh.positions.push_back(origin + Vec3(positions[v], positions[v + 1], positions[v + 2]));
+}
 
 Error decoding_error(Stage stage, gim_status status) {
     return {stage, std::string("own output: ") + gim_status_text(status)};

@@ -21,6 +21,9 @@ Error decoding_error(Stage stage, gim_status status);
 // Reads header and index of our own file. Fails with the decoder's status text.
 Result<gim_info> read_own_info(std::span<const uint8_t> bytes);
 
+// Appends decoded positions of a file to a mesh, in object space.
+void append_positions(const gim_info& info, std::span<const float> positions, Mesh& mesh);
+
 // Decodes all images of the file at one level into one mesh. Images whose seams do not close at that level are decoded
 // at their coarsest closed level. Fails with the decoder's status text.
 Result<Mesh> decode_surface(std::span<const uint8_t> bytes, uint32_t level);

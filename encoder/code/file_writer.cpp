@@ -1,5 +1,6 @@
 #include "encoder/code/file_writer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "encoder/code/code_bands.h"
@@ -8,7 +9,10 @@
 namespace gim {
 
 FileWriter::FileWriter(std::unique_ptr<LevelCoder> coder, const CodingParameters& parameters)
-    : coder_(std::move(coder)), planes_(parameters.planes), text_(parameters.text) {
+    : coder_(std::move(coder)),
+      has_wide_origin_(parameters.wide_origin),
+      planes_(parameters.planes),
+      text_(parameters.text) {
     seams_ = coder_->seam_payload();
     if (parameters.level_psnr) level_psnr_.assign(coder_->header().level_count, 0);
 }
@@ -22,7 +26,9 @@ Header FileWriter::header(double quantizer) const {
 
 std::vector<uint8_t> FileWriter::write(double quantizer) const {
     const Header header = this->header(quantizer);
-    return assemble_file(header, seams_, coder_->code_levels(header), planes_, text_);
+    Header in_file = header;
+    if (has_wide_origin_) std::copy(header.origin.begin(), header.origin.end(), in_file.wide_origin.emplace().begin());
+    return assemble_file(in_file, seams_, coder_->code_levels(header), planes_, text_);
 }
 
 Pyramid<int32_t> ImageBands::quantized(size_t image, const Header& header, const SeamTable* seams) const {

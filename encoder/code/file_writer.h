@@ -31,6 +31,7 @@ struct CodingParameters {
     std::optional<Units> units;      // lossy: units of a fit, used instead of those of the images
     RepairBands repair;              // lossy: mends what the quantizer spoils; empty: nothing does
     bool level_psnr = false;         // leaves room in the header for set_level_psnr
+    bool wide_origin = false;        // gives the file a binary64 origin, for move_origin
 };
 
 // Codes the images of a layout. Work that does not depend on the quantizer is done once, to make searches cheap.
@@ -51,12 +52,14 @@ class FileWriter {
 
     // Returns the file. Lossless coding ignores the quantizer. O(samples).
     std::vector<uint8_t> write(double quantizer) const;
-    // Returns the header of that file, without fields that depend on its contents. Its spans point into the writer.
+    // Returns the header of that file, without fields that depend on its contents. Its spans point into the writer. Its
+    // units are those of the images: they have a binary32 origin, which the file may hold in binary64.
     Header header(double quantizer) const;
 
   private:
     std::unique_ptr<LevelCoder> coder_;
     std::vector<uint8_t> seams_, level_psnr_;
+    bool has_wide_origin_;
     std::vector<CodedPlane> planes_;
     std::string text_;
 };

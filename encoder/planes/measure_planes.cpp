@@ -31,10 +31,8 @@ gim_status append_grid(Decoder& decoder, uint32_t image, DecodedGrids* grids) {
     status = decoder.grid(level, {positions, {}, texcoords, triangles});
     if (status != GIM_OK) return status;
     const auto first = static_cast<uint32_t>(grids->mesh.positions.size());
-    for (size_t i = 0; i < positions.size(); i += 3) {
-        grids->mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
-        grids->texcoords.emplace_back(texcoords[i / 3 * 2], texcoords[i / 3 * 2 + 1]);
-    }
+    append_positions(decoder.info(), positions, grids->mesh);
+    for (size_t i = 0; i < texcoords.size(); i += 2) grids->texcoords.emplace_back(texcoords[i], texcoords[i + 1]);
     for (size_t i = 0; i < triangles.size(); i += 3) {
         grids->mesh.triangles.push_back({first + triangles[i], first + triangles[i + 1], first + triangles[i + 2]});
         grids->image_of.push_back(image);

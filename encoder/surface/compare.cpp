@@ -11,6 +11,7 @@
 #include "encoder/base/parallel.h"
 #include "encoder/base/result.h"
 #include "encoder/surface/closest_point.h"
+#include "encoder/surface/compare_frame.h"
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/defects.h"
 #include "encoder/surface/shading_normals.h"
@@ -191,12 +192,20 @@ Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& te
     if (options.samples == 0) return Error{Stage::kCompare, "the number of samples is 0; ask for at least 1"};
     GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
     GIM_TRY(mesh_b, checked_mesh(test, "test"));
-    return ReferenceSurface(std::move(mesh_a), options.threads).compare(mesh_b, options);
+    const CompareFrame frame = choose_compare_frame(mesh_a, mesh_b);
+    move_into(frame, mesh_a);
+    move_into(frame, mesh_b);
+    GIM_TRY(comparison, ReferenceSurface(std::move(mesh_a), options.threads).compare(mesh_b, options));
+    move_out_of(frame, comparison);
+    return comparison;
 }
 
 Result<DefectMap> map_defects(const TriangleMesh& reference, const TriangleMesh& test, uint32_t threads) {
     GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
     GIM_TRY(mesh_b, checked_mesh(test, "test"));
+    const CompareFrame frame = choose_compare_frame(mesh_a, mesh_b);
+    move_into(frame, mesh_a);
+    move_into(frame, mesh_b);
     return locate_defects(mesh_b, mesh_a, ClosestPointTree(mesh_a, threads), threads);
 }
 

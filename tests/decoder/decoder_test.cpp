@@ -28,6 +28,26 @@ struct Opened {
     }
 };
 
+TEST(Decoder, PositionsAreRelativeToABinary64Origin) {
+    const Opened near(vector_file("sphere-17-lossless")), far(vector_file("wide-origin-lossless"));
+    EXPECT_EQ(near.info.is_relative, 0u);
+    EXPECT_EQ(far.info.is_relative, 1u);
+    EXPECT_EQ(far.info.origin[0], 500000.1);
+    EXPECT_EQ(far.info.origin[1], -4000000.3);
+    EXPECT_EQ(far.info.origin[2], 0x1p100);
+    const auto positions = [](const Opened& f) {
+        std::vector<float> out(size_t{f.level.vertex_count} * 3);
+        Scratch scratch(f.level.scratch_size);
+        EXPECT_EQ(gim_decode_mesh(&f.info, f.bytes.data(), f.bytes.size(), 0, 0, out.data(), nullptr, nullptr, nullptr,
+                                  scratch.data(), scratch.size()),
+                  GIM_OK);
+        return out;
+    };
+    const std::vector<float> relative = positions(far), absolute = positions(near);
+    for (size_t i = 0; i < absolute.size(); ++i)
+        EXPECT_EQ(static_cast<float>(near.info.origin[i % 3]) + relative[i], absolute[i]);
+}
+
 TEST(Decoder, MeshAndGridAreTheSameSurface) {
     for (const char* name : {"torus-33-lossy", "sphere-17-lossless", "tube-9-lossless", "schema-33-lossy-3"}) {
         const Opened f(vector_file(name));

@@ -202,6 +202,11 @@ Bytes with_index_bytes(Bytes file, const std::function<void(Bytes&)>& change) {
     return file;
 }
 
+// Gives a file a binary64 origin that binary32 cannot hold.
+Bytes far_away(const Bytes& file) {
+    return with_parts(file, [](Parts& p) { p.header.wide_origin = {500000.1, -4000000.3, 0x1p100}; });
+}
+
 // ---- output ---------------------------------------------------------------------------------------------------------
 
 void write_bytes(const fs::path& path, const Bytes& bytes) {
@@ -290,6 +295,10 @@ void write_valid(Writer& out) {
     measured.level_psnr = true;
     out.valid("level-psnr",
               set_level_psnr(encode({hill(17, folded_sides(), 2, 15)}, measured), std::vector<double>{73.9, 60.25, 0}));
+    // The same samples as in the files without "wide-origin", far from 0.
+    out.valid("wide-origin-lossless", far_away(encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5))));
+    out.valid("wide-origin-two-images-lossy",
+              far_away(encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6))));
     // Planes finer and coarser than the image; the text may come last.
     CodingParameters planes = lossy(12, 9, 30);
     planes.planes = {{ChunkType::kNormals, plane({33}, 48, 200)}, {ChunkType::kColors, plane({9}, 6, 20)}};
@@ -327,6 +336,7 @@ void write_valid_charts(Writer& out, const Bytes& kept) {
     out.valid("charts-open-lossy", encode_charts(open_sheet(2), lossy(12, 3, 25)));
     out.valid("charts-torus-lossless", encode_charts(torus_of_one_chart(17, 3), lossless(12, 3)));
     out.valid("charts-torus-lossy", encode_charts(torus_of_one_chart(33, 3), lossy(12, 3, 30)));
+    out.valid("wide-origin-charts-lossy", far_away(encode_charts(open_sheet(2), lossy(12, 3, 25))));
     // Boxes that no wavelet halves.
     out.valid("charts-ladder-lossless",
               encode_charts(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNoMate}, 1), lossless(8, 3)));
@@ -360,7 +370,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
     out.invalid("unsupported-version.layout-2", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{2}; }));
     out.invalid("unsupported-version.reserved-flag",
-                with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x10}; }));
+                with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x20}; }));
     out.invalid("unsupported-version.critical-chunk",
                 with_parts(plain, [](Parts& p) { insert_chunk(&p, 0, 77, false, {1}); }));
     out.invalid("checksum.index", changed(plain, 12, static_cast<uint8_t>(plain[12] ^ 1)));
@@ -385,6 +395,12 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     header("malformed.more-levels-than-sides", [](Parts& p) { p.exponents[0] = 1; });
     header("malformed.origin-nan", [](Parts& p) { p.header.origin[1] = std::numeric_limits<float>::quiet_NaN(); });
     header("malformed.origin-huge", [](Parts& p) { p.header.origin[2] = 0x1p101f; });
+    const auto far = [&](const char* name, size_t axis, double origin) {
+        out.invalid(name, with_parts(far_away(fine), [&](Parts& p) { (*p.header.wide_origin)[axis] = origin; }));
+    };
+    far("malformed.wide-origin-nan", 0, std::numeric_limits<double>::quiet_NaN());
+    far("malformed.wide-origin-infinite", 2, -std::numeric_limits<double>::infinity());
+    far("malformed.wide-origin-huge", 1, -0x1.0000000000001p100);
     header("malformed.step-zero", [](Parts& p) { p.header.step = 0; });
     header("malformed.step-negative", [](Parts& p) { p.header.step = -1; });
     header("malformed.step-infinite", [](Parts& p) { p.header.step = std::numeric_limits<float>::infinity(); });

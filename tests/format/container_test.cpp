@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "format/checksum.h"
 
 namespace gim {
@@ -139,6 +141,63 @@ TEST(Container, SerializedHeadersParseBack) {
     EXPECT_EQ(back.sample_count, 33u * 33u);
 }
 
+// Kind 0x10; then a binary64 origin of 1, -2, 2^100; step 0.5.
+std::vector<uint8_t> wide_bytes() {
+    std::vector<uint8_t> bytes = {0x89, 'G', 'I',  'M',  0x0D, 0x0A, 0x1A, 1,    0, 0x10, 12, 1, 1, 2,  //
+                                  0,    0,   0,    0,    0,    0,    0xF0, 0x3F,                        // 1
+                                  0,    0,   0,    0,    0,    0,    0,    0xC0,                        // -2
+                                  0,    0,   0,    0,    0,    0,    0x30, 0x46,                        // 2^100
+                                  0,    0,   0,    0x3F,                                                // step
+                                  0x00, 1,   0xAA, 0xBB, 0x04, 2,    0xCC, 0xDD};                       // SEAM, LEVL
+    bytes[8] = static_cast<uint8_t>(bytes.size() + 4);
+    append_u32(crc32(bytes), &bytes);
+    return bytes;
+}
+
+TEST(Container, ABinary64OriginStandsInThePlaceOfTheOther) {
+    Header h;
+    ASSERT_EQ(parse(wide_bytes(), &h), Status::kOk);
+    ASSERT_TRUE(h.wide_origin);
+    EXPECT_EQ(*h.wide_origin, (std::array<double, 3>{1, -2, 0x1p100}));
+    EXPECT_EQ(h.origin, (std::array<float, 3>{0, 0, 0}));
+    EXPECT_EQ(h.step, 0.5f);
+    EXPECT_EQ(h.chunk_count, 2u);
+
+    h = small_header();
+    h.wide_origin = {0.1, -1e30, 4e6 + 0.3};
+    Header back;
+    ASSERT_EQ(parse(serialize_header(h, kChunks), &back), Status::kOk);
+    EXPECT_EQ(back.wide_origin, h.wide_origin);
+    EXPECT_EQ(serialize_header(h, kChunks).size(), serialize_header(small_header(), kChunks).size() + 12);
+    ASSERT_EQ(parse(serialize_header(small_header(), kChunks), &back), Status::kOk);
+    EXPECT_FALSE(back.wide_origin);
+}
+
+TEST(Container, Binary64OriginsAreFiniteAndInRange) {
+    Header back;
+    const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1.3e30,
+                          -1.3e30};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        for (const double value : bad) {
+            Header h = small_header();
+            h.wide_origin = {0, 0, 0};
+            (*h.wide_origin)[axis] = value;
+            EXPECT_EQ(parse(serialize_header(h, kChunks), &back), Status::kMalformed) << axis << " " << value;
+        }
+    }
+}
+
+TEST(Container, IndicesThatEndWithinABinary64OriginAreMalformed) {
+    const std::vector<uint8_t> whole = wide_bytes();
+    for (size_t size = 14; size < 14 + 24; ++size) {
+        std::vector<uint8_t> bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size));
+        bytes[8] = static_cast<uint8_t>(size + 4);
+        append_u32(crc32(bytes), &bytes);
+        Header h;
+        EXPECT_EQ(parse(bytes, &h), Status::kMalformed) << size;
+    }
+}
+
 TEST(Container, IndexSizeCountsItselfWhenItTakesTwoBytes) {
     const std::vector<uint8_t> sides(500, 5);
     Header h = small_header(), back;
@@ -163,11 +222,12 @@ TEST(Container, PsnrOfLevelsComesBackCoarsestFirst) {
 }
 
 TEST(Container, EveryTruncationAsksForMore) {
-    const auto bytes = serialize_header(small_header(), kChunks);
     Header h;
-    for (size_t n = 0; n < bytes.size(); ++n) {
-        const std::vector<uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(n));
-        EXPECT_EQ(parse(cut, &h), Status::kNeedMoreInput) << n;
+    for (const auto& bytes : {serialize_header(small_header(), kChunks), wide_bytes()}) {
+        for (size_t n = 0; n < bytes.size(); ++n) {
+            const std::vector<uint8_t> cut(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(n));
+            EXPECT_EQ(parse(cut, &h), Status::kNeedMoreInput) << n;
+        }
     }
 }
 

@@ -23,6 +23,11 @@ using test::torus_image;
 std::vector<DecodedImage> one_torus() { return {torus_image(9)}; }
 std::vector<DecodedImage> two_tori() { return {torus_image(9), torus_image(5, 10)}; }
 
+constexpr std::array<std::pair<SurfaceFormat, MeshFormat>, 3> kIndexedFormats = {
+    {{SurfaceFormat::kPly, MeshFormat::kPly},
+     {SurfaceFormat::kObj, MeshFormat::kObj},
+     {SurfaceFormat::kOff, MeshFormat::kOff}}};
+
 TriangleMesh read_back(const Bytes& bytes, MeshFormat format) {
     ReadContext context;
     const Result<TriangleMesh> mesh = read_mesh(bytes, format, context);
@@ -49,9 +54,7 @@ std::vector<std::array<std::array<double, 3>, 3>> corners(const TriangleMesh& me
 TEST(SurfaceWrite, IndexedFormatsGiveBackTheSameFloatsAndShareVertices) {
     for (const std::vector<DecodedImage>& images : {one_torus(), two_tori()}) {
         const TriangleMesh expected = to_mesh(images);
-        for (const auto& [output, input] :
-             {std::pair{SurfaceFormat::kPly, MeshFormat::kPly}, std::pair{SurfaceFormat::kObj, MeshFormat::kObj},
-              std::pair{SurfaceFormat::kOff, MeshFormat::kOff}}) {
+        for (const auto& [output, input] : kIndexedFormats) {
             const Result<Bytes> bytes = write_surface(output, images);
             ASSERT_TRUE(bytes.ok());
             const TriangleMesh mesh = read_back(bytes.value(), input);
@@ -189,6 +192,33 @@ void expect_exr_plane(Imf::InputPart& part, const std::string& channel, const De
     for (size_t i = 0; i < plane.size(); ++i) {
         ASSERT_EQ(plane[i], k < 3 ? image.grid[3 * i + k] : 1.0F) << channel << " " << i;
     }
+}
+
+TEST(SurfaceWrite, PositionsRelativeToAnOriginAreDoublesWhereAFormatHasThem) {
+    std::vector<DecodedImage> images = two_tori();
+    for (DecodedImage& image : images) image.origin = {500000.1, -4000000.3, 1e9 / 3};
+    const TriangleMesh expected = to_mesh(images);
+    EXPECT_EQ(expected.positions[0][0], 500000.1 + double{images[0].positions[0]});
+    for (const auto& [output, input] : kIndexedFormats) {
+        const Result<Bytes> bytes = write_surface(output, images);
+        ASSERT_TRUE(bytes.ok());
+        const TriangleMesh mesh = read_back(bytes.value(), input);
+        EXPECT_TRUE(mesh.positions == expected.positions) << format_name(input);
+        EXPECT_EQ(mesh.triangles, expected.triangles) << format_name(input);
+        EXPECT_EQ(rounding_warning(output, images), "");
+    }
+    for (const bool fused : {false, true}) {
+        const Result<Bytes> glb = write_surface(SurfaceFormat::kGlb, images, {.fused = fused});
+        ASSERT_TRUE(glb.ok());
+        EXPECT_TRUE(corners(read_back(glb.value(), MeshFormat::kGltf)) == corners(expected));
+    }
+    EXPECT_EQ(rounding_warning(SurfaceFormat::kGlb, images), "");
+    EXPECT_NE(rounding_warning(SurfaceFormat::kStl, images).find("rounded by up to 1"), std::string::npos)
+        << rounding_warning(SurfaceFormat::kStl, images);
+    EXPECT_NE(rounding_warning(SurfaceFormat::kExr, images).find("gimOrigin, 500000.1 -4000000.3"), std::string::npos)
+        << rounding_warning(SurfaceFormat::kExr, images);
+    for (const SurfaceFormat format : {SurfaceFormat::kStl, SurfaceFormat::kExr})
+        EXPECT_EQ(rounding_warning(format, two_tori()), "");
 }
 
 TEST(SurfaceWrite, ExrHoldsTheSamplesBitForBit) {

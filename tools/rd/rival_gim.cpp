@@ -46,9 +46,12 @@ class GimDecoder : public RepeatedDecoder {
     RivalMesh mesh() const override {
         RivalMesh result;
         for (const Image& image : images_) {
+            const gim_info& info = decoder_.info();
             const auto first = static_cast<uint32_t>(result.positions.size());
             for (size_t v = 0; v < image.positions.size(); v += 3) {
-                result.positions.push_back({image.positions[v], image.positions[v + 1], image.positions[v + 2]});
+                std::array<float, 3>& p = result.positions.emplace_back();
+                for (size_t k = 0; k < 3; ++k)
+                    p[k] = image.positions[v + k] + (info.is_relative ? static_cast<float>(info.origin[k]) : 0.0f);
             }
             for (size_t t = 0; t < image.triangles.size(); t += 3) {
                 result.triangles.push_back(

@@ -79,11 +79,14 @@ typedef struct gim_info {
     uint32_t chunk_count;  /* for gim_read_chunk */
     uint64_t sample_count; /* of all images at level 0, undefined ones included */
     uint64_t file_size;    /* of the whole file, as the index says */
-    float origin[3];       /* lossless: position = origin + step * integer */
-    float step;            /* object units per quantization step, > 0 */
-    float quantizer;       /* lossy: step across the surface, in quantization steps, at unit norm and mean density.
+    double origin[3];      /* where coordinates of 0 units lie, in object units; of all images */
+    uint32_t
+        is_relative;     /* 1: decoded positions are relative to origin, because floats could not hold their sum: add it
+                              in doubles. 0: decoded positions contain it. Normals are the same either way */
+    float step;          /* object units per quantization step, > 0. Lossless: positions are whole steps from origin */
+    float quantizer;     /* lossy: step across the surface, in quantization steps, at unit norm and mean density.
                               lossless: 0 */
-    uint32_t index_size;   /* bytes of header and index; a prefix of this length suffices for gim_read_info */
+    uint32_t index_size; /* bytes of header and index; a prefix of this length suffices for gim_read_info */
     float level_psnr[GIM_MAX_LEVELS]; /* dB; level 0 first. The encoder measured each level against its input and
                                          rounded down to half decibels. 0: the file does not say */
     gim_limits limits;                /* later calls obey them */
@@ -109,8 +112,9 @@ GIM_API gim_status gim_read_level_info(const gim_info* info, const void* bytes, 
                                        uint32_t level, gim_level_info* level_info);
 
 /* Decodes one level of one image into its grid.
- * positions  width*height*3 floats, row by row, in object units. Samples of one surface point are bit-equal; the
- *            correction that made them so fades out into the interior. Undefined samples (GIM_LAYOUT_MCGIM) are NaN
+ * positions  width*height*3 floats, row by row, in object units; relative to gim_info.origin if is_relative. Samples of
+ *            one surface point are bit-equal; the correction that made them so fades out into the interior. Undefined
+ *            samples (GIM_LAYOUT_MCGIM) are NaN
  * scratch    scratch_size bytes, aligned to 16 bytes; their contents are undefined afterwards
  * GIM_LAYOUT_MCGIM: at level 0 the grid is the rectangle that the charts are packed into. At other levels the charts
  * lie beside each other in a grid of its own.
@@ -121,8 +125,9 @@ GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes,
 
 /* Decodes the same level into an indexed triangle mesh without gaps at the seams. All outputs but positions may be
  * NULL.
- * positions  vertex_count*3 floats, in object units. GIM_LAYOUT_GIM: first the vertices of the image's rim, then the
- *            inner samples row by row. GIM_LAYOUT_MCGIM: chart after chart, each row by row; a vertex comes where
+ * positions  vertex_count*3 floats, in object units, relative as in gim_decode_positions. GIM_LAYOUT_GIM: first the
+ *            vertices of the image's rim, then the inner samples row by row. GIM_LAYOUT_MCGIM: chart after chart, each
+ *            row by row; a vertex comes where
  *            its first sample is
  * normals    vertex_count*3 floats of unit length; 0 0 0 where the surface has no normal
  * texcoords  vertex_count*2 floats: u = column / (width-1), v = row / (height-1) in the grid of level 0, at every

@@ -264,7 +264,7 @@ TEST(ReadCharts, LosslessSamplesAreWholeUnits) {
         const Level f = decode(vector_file(name), 0);
         ASSERT_EQ(f.status, GIM_OK);
         for (size_t i = 0; i < f.mesh.size(); ++i) {
-            const float unit = (f.mesh[i] - f.info.origin[i % 3]) / f.info.step;
+            const double unit = (double{f.mesh[i]} - f.info.origin[i % 3]) / double{f.info.step};
             EXPECT_NEAR(unit, std::round(unit), 1e-2) << name;
         }
     }

@@ -66,7 +66,7 @@ TEST(WriteCharts, LosslessSamplesAreTheQuantizedOnesAndTheRestIsNotANumber) {
             Units header;
             header.bits = info.bits;
             header.step = info.step;
-            std::copy_n(info.origin, 3, header.origin.begin());
+            for (size_t k = 0; k < 3; ++k) header.origin[k] = static_cast<float>(info.origin[k]);
             std::vector<uint8_t> seen(grid.size() / 3, 0);
             for (size_t c = 0; c < images.charts.size(); ++c) {
                 const ChartBox& box = images.charts[c];
@@ -79,7 +79,7 @@ TEST(WriteCharts, LosslessSamplesAreTheQuantizedOnesAndTheRestIsNotANumber) {
                     ASSERT_EQ(seen[at]++, 0) << name << ": charts upon each other";
                     for (size_t k = 0; k < 3; ++k)
                         ASSERT_EQ(grid[size_t{at} * 3 + k],
-                                  info.origin[k] + info.step * static_cast<float>(units[size_t{i} * 3 + k]))
+                                  header.origin[k] + info.step * static_cast<float>(units[size_t{i} * 3 + k]))
                             << name << " " << bits << " bits";
                 }
             }

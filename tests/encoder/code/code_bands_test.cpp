@@ -53,7 +53,7 @@ std::vector<float> decoded_units(const std::vector<uint8_t>& bytes) {
     EXPECT_EQ(decoder.grid(level, {positions, {}, {}, {}}), GIM_OK);
     const gim_info& info = decoder.info();
     for (size_t i = 0; i < positions.size(); ++i)
-        positions[i] = static_cast<float>((double{positions[i]} - double{info.origin[i % 3]}) / double{info.step});
+        positions[i] = static_cast<float>((double{positions[i]} - info.origin[i % 3]) / double{info.step});
     return positions;
 }
 

@@ -70,9 +70,10 @@ TEST(WriteSquares, LosslessKeepsEveryQuantizedSampleAtEveryBitDepthAndSide) {
             ASSERT_EQ(d.status, GIM_OK);
             for (size_t i = 0; i < image.positions.size(); ++i) {
                 for (int k = 0; k < 3; ++k) {
-                    const double unit = (image.positions[i][k] - double{d.info.origin[k]}) / double{d.info.step};
+                    const double unit = (image.positions[i][k] - d.info.origin[k]) / double{d.info.step};
                     const float q = static_cast<float>(std::max(std::floor(unit + 0.5), 0.0));
-                    ASSERT_EQ(d.positions[i * 3 + static_cast<size_t>(k)], d.info.origin[k] + d.info.step * q)
+                    ASSERT_EQ(d.positions[i * 3 + static_cast<size_t>(k)],
+                              static_cast<float>(d.info.origin[k]) + d.info.step * q)
                         << side << " " << bits << " sample " << i;
                 }
             }

@@ -56,6 +56,60 @@ TEST(Compare, PartOfASurfaceIsNearTheWholeButNotTheOtherWayRound) {
     EXPECT_EQ(result.value().rms, result.value().rms_to_test);
 }
 
+TEST(Compare, SizesWhoseSquaresLeaveTheRangeOfDoublesAreMeasured) {
+    const TriangleMesh a = corpus::sphere(8), b = shifted(a, 0.01, 0.02, 0.03);
+    const auto scaled = [](TriangleMesh mesh, int exponent) {
+        for (auto& p : mesh.positions) {
+            for (double& x : p) x = std::ldexp(x, exponent);
+        }
+        return mesh;
+    };
+    CompareOptions options;
+    options.samples = 5000;
+    options.normals = options.defects = true;
+    const auto plain = compare(a, b, options);
+    ASSERT_TRUE(plain.ok());
+    for (const int exponent : {-1000, -700, -120, 120, 700, 1000}) {
+        const auto extreme = compare(scaled(a, exponent), scaled(b, exponent), options);
+        ASSERT_TRUE(extreme.ok()) << exponent << extreme.error().message;
+        EXPECT_NEAR(extreme.value().psnr, plain.value().psnr, 1e-9) << exponent;
+        EXPECT_NEAR(std::ldexp(extreme.value().rms, -exponent), plain.value().rms, 1e-12) << exponent;
+        EXPECT_NEAR(std::ldexp(extreme.value().hausdorff, -exponent), plain.value().hausdorff, 1e-12) << exponent;
+        EXPECT_NEAR(std::ldexp(extreme.value().diagonal, -exponent), plain.value().diagonal, 1e-12) << exponent;
+        EXPECT_NEAR(extreme.value().normals->mean, plain.value().normals->mean, 1e-9) << exponent;
+        EXPECT_EQ(extreme.value().defects->folded_faces, plain.value().defects->folded_faces) << exponent;
+        EXPECT_TRUE(map_defects(scaled(a, exponent), scaled(b, exponent)).ok());
+    }
+    // Beside a surface of 2^1000 the other one is a point.
+    for (const auto& far_apart : {compare(scaled(a, 1000), b, options), compare(b, scaled(a, 1000), options)}) {
+        ASSERT_FALSE(far_apart.ok());
+        EXPECT_NE(far_apart.error().message.find("no area"), std::string::npos) << far_apart.error().message;
+    }
+}
+
+TEST(Compare, FarFromZeroSurfacesAreMeasuredAsNearIt) {
+    // Coordinates that are whole multiples of 2^-8 are exact at 2^40.
+    TriangleMesh a = corpus::sphere(12);
+    for (auto& p : a.positions) {
+        for (double& x : p) x = std::floor(x * 256) / 256;
+    }
+    TriangleMesh b = a;
+    std::swap(b.triangles[5][1], b.triangles[5][2]);  // a fold, which has a place
+    b.positions[3][0] += 1.0 / 256;
+    CompareOptions options;
+    options.samples = 5000;
+    options.defects = true;
+    const auto near = compare(a, b, options),
+               far = compare(shifted(a, 0x1p40, -0x1p41, 0), shifted(b, 0x1p40, -0x1p41, 0), options);
+    ASSERT_TRUE(near.ok() && far.ok());
+    EXPECT_NEAR(far.value().psnr, near.value().psnr, 1e-6);
+    const auto &near_fold = near.value().defects->largest_fold, &far_fold = far.value().defects->largest_fold;
+    ASSERT_EQ(near_fold.faces, far_fold.faces);
+    ASSERT_GT(near_fold.faces, 0u);
+    EXPECT_NEAR(far_fold.center[0] - 0x1p40, near_fold.center[0], 1e-3);
+    EXPECT_NEAR(far_fold.center[1] + 0x1p41, near_fold.center[1], 1e-3);
+}
+
 // Ground of area 4 with an upright fin of area 2 and height 1: 2/6 of the area has mean square height 1/3.
 TEST(Compare, AFinCountsWhicheverSurfaceHasIt) {
     const TriangleMesh ground = square(6);
