@@ -44,10 +44,38 @@ std::string scientific(double value) {
     return text;
 }
 
+// Names the kinds of repair that there were. Empty if there were none.
+std::string describe_repairs(const Repairs& repairs) {
+    struct Kind {
+        uint64_t count;
+        const char* name;
+    };
+    const Kind kinds[] = {{repairs.nearly_welded, "points welded nearby"},
+                          {repairs.degenerate_triangles, "collapsed triangles"},
+                          {repairs.duplicate_triangles, "repeated triangles"},
+                          {repairs.double_triangles, "double triangles"},
+                          {repairs.slivers, "slivers"},
+                          {repairs.crowded_edges, "edges of more than two faces"},
+                          {repairs.cut_edges, "edges cut open"},
+                          {repairs.split_points, "touching points"},
+                          {repairs.one_sided_cuts, "edges of a one-sided surface cut open"},
+                          {repairs.flipped_triangles, "triangles turned over"},
+                          {repairs.inside_out, "components inside out"}};
+    std::string text;
+    for (const Kind& kind : kinds) {
+        if (kind.count > 0) text += (text.empty() ? "" : ", ") + with_thousands(kind.count) + " " + kind.name;
+    }
+    return text;
+}
+
 void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("file", command.output));
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
+    if (const std::string repairs = describe_repairs(report.repairs); !repairs.empty())
+        print_line(format_line("repairs", repairs));
+    if (report.topology.components > 1)
+        print_line(format_line("components", with_thousands(report.topology.components)));
     print_line(
         format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
                                  (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
@@ -87,6 +115,11 @@ void print_report(const EncodeCommand& command, const EncodeReport& report) {
     print_line(format_line("all stages", fixed(report.seconds, 2) + " s"));
 }
 
+void print_warnings(const std::string& input, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "gim: %s: warning: %s\n", input.c_str(), warning.c_str());
+}
+
 Result<void> write_json(const std::string& path, const std::string& text) {
     if (path == "-") {
         print_line(text);
@@ -108,8 +141,7 @@ int run_encode(const EncodeCommand& command) {
 
     Result<Input> input = read_input(command.input, Want::kShapeAndColors);
     if (!input.ok()) return report_error(command.input, input.error());
-    for (const std::string& warning : input.value().warnings)
-        std::fprintf(stderr, "gim: %s: warning: %s\n", command.input.c_str(), warning.c_str());
+    print_warnings(command.input, input.value().warnings);
 
     StatePictures pictures(command.debug_folder);
     const bool draws = !command.debug_folder.empty();
@@ -132,6 +164,7 @@ int run_encode(const EncodeCommand& command) {
     if (!written.ok()) return report_error(command.output, written.error());
 
     const EncodeReport& report = encoded.value().report;
+    print_warnings(command.input, report.warnings);
     if (!command.json.empty()) {
         nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
         document.update(to_json(report));

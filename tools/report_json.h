@@ -11,6 +11,7 @@ namespace gim {
 nlohmann::ordered_json to_json(const TopologySummary& topology);
 nlohmann::ordered_json to_json(const Defects& defects);
 nlohmann::ordered_json to_json(const Comparison& comparison);
+nlohmann::ordered_json to_json(const Repairs& repairs);
 nlohmann::ordered_json to_json(const EncodeReport& report);
 
 }  // namespace gim
