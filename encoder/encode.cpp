@@ -26,8 +26,8 @@ namespace {
 void describe_input(const TriangleMesh& input, const CleanMesh& cleaned, EncodeReport& report) {
     report.input_vertices = input.positions.size();
     report.input_triangles = input.triangles.size();
-    report.welded_vertices = cleaned.report.welded_vertices;
-    report.removed_triangles = cleaned.report.degenerate_triangles + cleaned.report.duplicate_triangles;
+    report.repairs = cleaned.report.repairs;
+    report.warnings = cleaned.report.warnings;
     report.topology = cleaned.report.topology;
 }
 
@@ -38,7 +38,9 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
 
     clock.begin(Stage::kClean);
     GIM_CHECK(check_extent(input, options.bits));
-    GIM_TRY(cleaned, clean(input, {.require_connected = false}));
+    const CleanOptions cleaning = {
+        .require_connected = false, .strict = options.strict, .weld_tolerance = options.weld_tolerance};
+    GIM_TRY(cleaned, clean(input, cleaning));
     EncodeReport input_report;
     describe_input(input, cleaned, input_report);
 

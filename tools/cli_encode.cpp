@@ -11,22 +11,25 @@
 namespace gim {
 namespace {
 
-// Reads "0.5", in object units, or "0.1%", of the diagonal. Returns nothing if the text is neither, or not above 0.
-std::optional<RateTarget> max_error_target(std::string_view text) {
-    RateTarget target{RateTarget::Kind::kMaxError, 0, text.ends_with('%')};
-    if (target.in_diagonals) {
+// Reads "0.5", in object units, or "0.1%", of the diagonal. Returns nothing if the text is neither, or negative.
+std::optional<Length> parse_length(std::string_view text) {
+    Length length{0, text.ends_with('%')};
+    if (length.in_diagonals) {
         text.remove_suffix(1);
         while (text.ends_with(' ')) text.remove_suffix(1);
     }
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target.value);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length.value);
     if (error != std::errc() || end != text.data() + text.size()) return {};
-    if (target.in_diagonals) target.value /= 100;
-    return target.value > 0 && std::isfinite(target.value) ? std::optional(target) : std::nullopt;
+    if (length.in_diagonals) length.value /= 100;
+    return length.value >= 0 && std::isfinite(length.value) ? std::optional(length) : std::nullopt;
 }
 
-CLI::Validator max_error_validator() {
-    const auto check = [](const std::string& text) -> std::string {
-        return max_error_target(text) ? "" : "must be a length above 0, as 0.5 or 0.1%, not " + text;
+CLI::Validator length_validator(bool may_be_zero) {
+    const auto check = [may_be_zero](const std::string& text) -> std::string {
+        const std::optional<Length> length = parse_length(text);
+        if (length && (may_be_zero || length->value > 0)) return {};
+        return std::string("must be a length ") + (may_be_zero ? "of 0 or more" : "above 0") +
+               ", as 0.5 or 0.1%, not " + text;
     };
     return {check, "LENGTH"};
 }
@@ -37,7 +40,7 @@ struct EncodeArguments {
     bool even = false;
     const CLI::Option* size = nullptr;
     std::optional<double> psnr, quality;
-    std::string max_error;
+    std::string max_error, weld;
     std::optional<uint64_t> bytes;
     uint32_t normals = 0;
     std::optional<uint32_t> colors;
@@ -77,6 +80,16 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
         ->capture_default_str();
 }
 
+// Options of cleaning.
+void add_repair_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_flag("--strict", a.command.options.strict,
+                  "Refuse a surface that is no oriented manifold, and say where. Default: repair it, and say so");
+    sub->add_option("--weld", a.weld,
+                    "Weld boundary vertices that are not farther apart: in the mesh's unit, or with % of the diagonal "
+                    "of its bounding box. Default: 0.0001%, with --strict 0")
+        ->check(length_validator(true));
+}
+
 void add_rate_options(CLI::App* sub, EncodeArguments& a) {
     CLI::Option_group* rate = sub->add_option_group("rate", "How many bytes the samples may take (choose at most one)");
     rate->require_option(0, 1);
@@ -86,7 +99,7 @@ void add_rate_options(CLI::App* sub, EncodeArguments& a) {
     rate->add_option("--max-error", a.max_error,
                      "At most this distance between the decoded surface and the mesh at any place, both ways: in the "
                      "mesh's unit, or with % of the diagonal of its bounding box. Checked after decoding")
-        ->check(max_error_validator());
+        ->check(length_validator(false));
     rate->add_option("--bytes", a.bytes, "At most this size of the whole file")->check(CLI::PositiveNumber);
     rate->add_option("--quality", a.quality, "0 (smallest file) to 100 (finest); 10 more halve the quantizer step")
         ->check(finite_range(0, 100, "Q"));
@@ -145,7 +158,9 @@ void apply_rate(EncodeArguments& a) {
     RateTarget& rate = a.command.options.rate;
     if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
     if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};
-    if (!a.max_error.empty()) rate = max_error_target(a.max_error).value_or(rate);
+    if (const auto length = parse_length(a.max_error))
+        rate = {RateTarget::Kind::kMaxError, length->value, length->in_diagonals};
+    a.command.options.weld_tolerance = parse_length(a.weld);
     if (a.bytes) rate = {RateTarget::Kind::kBytes, static_cast<double>(*a.bytes)};
     if (a.quality) rate = {RateTarget::Kind::kQuality, *a.quality};
 }
@@ -175,8 +190,11 @@ Subcommand add_encode(CLI::App& app) {
     sub->footer(
         "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension. glTF is read in\n"
         "the file's own pose: morph weights and skins apply, animations do not. Draco and meshopt are decompressed.\n"
-        "The surface must be orientable, without non-manifold edges or vertices. gim first welds duplicate vertices\n"
-        "and removes degenerate faces. In the layout gim, each connected component becomes an image of its own.\n"
+        "gim repairs what is no oriented manifold, and says what it did: it welds vertices, joins faces in pairs, "
+        "splits\n"
+        "points where parts touch, drops faces without area, turns faces over. --strict refuses such a surface "
+        "instead.\n"
+        "In the layout gim, each connected component becomes an image of its own.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
         "size tells its side. gim imports it with the parametrization that it has.\n"
         "Two names of one file are refused. If OUT is standard output, the summary goes to stderr.\n"
@@ -190,6 +208,7 @@ Subcommand add_encode(CLI::App& app) {
         "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done     several meshes");
     add_file_options(sub, a);
     add_image_options(sub, a);
+    add_repair_options(sub, a);
     add_rate_options(sub, a);
     add_fit_options(sub, a);
     add_plane_options(sub, a);

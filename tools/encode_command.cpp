@@ -48,12 +48,40 @@ std::string scientific(double value) {
     return text;
 }
 
+// Names the kinds of repair that there were. Empty if there were none.
+std::string describe_repairs(const Repairs& repairs) {
+    struct Kind {
+        uint64_t count;
+        const char* name;
+    };
+    const Kind kinds[] = {{repairs.nearly_welded, "points welded nearby"},
+                          {repairs.degenerate_triangles, "collapsed triangles"},
+                          {repairs.duplicate_triangles, "repeated triangles"},
+                          {repairs.double_triangles, "double triangles"},
+                          {repairs.slivers, "slivers"},
+                          {repairs.crowded_edges, "edges of more than two faces"},
+                          {repairs.cut_edges, "edges cut open"},
+                          {repairs.split_points, "touching points"},
+                          {repairs.one_sided_cuts, "edges of a one-sided surface cut open"},
+                          {repairs.flipped_triangles, "triangles turned over"},
+                          {repairs.inside_out, "components inside out"}};
+    std::string text;
+    for (const Kind& kind : kinds) {
+        if (kind.count > 0) text += (text.empty() ? "" : ", ") + with_thousands(kind.count) + " " + kind.name;
+    }
+    return text;
+}
+
 std::string summary(const EncodeCommand& command, const EncodeReport& report) {
     std::string text;
     const auto print_line = [&](const std::string& line) { text += line + "\n"; };
     print_line(format_line("file", shown_name(command.output, Direction::kWrite)));
     print_line(format_line("input vertices", with_thousands(report.input_vertices)));
     print_line(format_line("input triangles", with_thousands(report.input_triangles)));
+    if (const std::string repairs = describe_repairs(report.repairs); !repairs.empty())
+        print_line(format_line("repairs", repairs));
+    if (report.topology.components > 1)
+        print_line(format_line("components", with_thousands(report.topology.components)));
     print_line(
         format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
                                  (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));
@@ -170,6 +198,7 @@ int run_encode(const EncodeCommand& command) {
         if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());
     }
     if (!encoded.ok()) return report_error(input_name, encoded.error());
+    print_warnings(input_name, encoded.value().report.warnings);
     return write_results(command, std::move(encoded.value()));
 }
 

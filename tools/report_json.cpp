@@ -54,6 +54,22 @@ ordered_json to_json(const Defects& defects) {
               {"faces", defects.largest_fold.faces}}}};
 }
 
+ordered_json to_json(const Repairs& repairs) {
+    return {{"welded_vertices", repairs.welded_vertices},
+            {"unreferenced_vertices", repairs.unreferenced_vertices},
+            {"degenerate_triangles", repairs.degenerate_triangles},
+            {"nearly_welded", repairs.nearly_welded},
+            {"duplicate_triangles", repairs.duplicate_triangles},
+            {"double_triangles", repairs.double_triangles},
+            {"slivers", repairs.slivers},
+            {"crowded_edges", repairs.crowded_edges},
+            {"cut_edges", repairs.cut_edges},
+            {"split_points", repairs.split_points},
+            {"one_sided_cuts", repairs.one_sided_cuts},
+            {"flipped_triangles", repairs.flipped_triangles},
+            {"inside_out", repairs.inside_out}};
+}
+
 ordered_json to_json(const EncodeReport& report) {
     ordered_json planes = ordered_json::array();
     for (const PlaneReport& plane : report.planes) {
@@ -80,8 +96,8 @@ ordered_json to_json(const EncodeReport& report) {
     }
     return {{"input_vertices", report.input_vertices},
             {"input_triangles", report.input_triangles},
-            {"welded_vertices", report.welded_vertices},
-            {"removed_triangles", report.removed_triangles},
+            {"repairs", to_json(report.repairs)},
+            {"warnings", report.warnings},
             {"topology", to_json(report.topology)},
             {"layout", report.layout == Layout::kMcgim ? "mcgim" : "gim"},
             {"images", report.images},

@@ -12,6 +12,7 @@ namespace gim {
 nlohmann::ordered_json to_json(const TopologySummary& topology);
 nlohmann::ordered_json to_json(const Defects& defects);
 nlohmann::ordered_json to_json(const Comparison& comparison);
+nlohmann::ordered_json to_json(const Repairs& repairs);
 nlohmann::ordered_json to_json(const EncodeReport& report);
 
 // The document with a line end. Names of files may hold any bytes: what is not UTF-8 is replaced by U+FFFD.

@@ -1,7 +1,9 @@
-// Turns triangles as read from a file into the mesh that the stages work on, or says what is wrong with them.
+// Turns triangles as read from a file into the mesh that the stages work on. Repairs what is not a manifold.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "encoder/surface/mesh.h"
@@ -12,28 +14,29 @@ namespace gim {
 
 struct CleanOptions {
     bool require_connected = true;  // false: allows several components (one image each, or a layout that takes them)
+    bool strict = false;            // true: an Error where a surface needs more than welding and turning
+    std::optional<Length> weld_tolerance = {};  // as in EncodeOptions
 };
 
 struct CleanReport {
-    uint64_t welded_vertices = 0;        // vertices merged into another at the same position
-    uint64_t degenerate_triangles = 0;   // removed: they repeat a vertex
-    uint64_t duplicate_triangles = 0;    // removed: an earlier one has the same three vertices
-    uint64_t unreferenced_vertices = 0;  // removed
-    uint64_t flipped_triangles = 0;      // turned over, to agree with their neighbours or to face outwards
-    TopologySummary topology;            // of the result
+    Repairs repairs;
+    std::vector<std::string> warnings;
+    TopologySummary topology;  // of the result
 };
 
 struct CleanMesh {
     Mesh mesh;                            // oriented 2-manifold without unreferenced vertices
-    std::vector<uint32_t> source_vertex;  // per vertex: its (first) index in the input
+    std::vector<uint32_t> source_vertex;  // per vertex: its (first) index in the input; a new vertex has a neighbour's
     CleanReport report;
 };
 
 // In:  finite positions, and triangles that index them. Otherwise returns an Error.
-// Out: an oriented manifold, connected if the options require it. Closed components face outwards. Zero-area triangles
-//      with three distinct vertices stay, because they are part of the connectivity.
-// Welds vertices only along pairs of boundary edges at exactly equal positions (triangle soup, seams). Welding
-// therefore shuts gaps and cannot pinch the surface: two sheets that merely touch stay apart. Cost: O(F log F).
+// Out: an oriented manifold, connected if the options require it. Each component keeps the side that most of its faces
+//      show, so cavities stay cavities. A closed component whose faces disagree much faces outwards.
+//
+// The result depends on positions and faces, not on how a file shares or repeats vertices. There is one exception: where
+// the indices of a file describe a manifold, faces that it joins stay joined. What is repaired, and how, stands in
+// spec/bad-meshes.md. Faces and vertices of a sound mesh keep their order. Cost: O(F log F).
 Result<CleanMesh> clean(const TriangleMesh& input, const CleanOptions& options = {});
 
 }  // namespace gim

@@ -183,6 +183,11 @@ struct RateTarget {
     bool in_diagonals = false;  // kMaxError: `value` counts bounding-box diagonals of the input, not object units
 };
 
+struct Length {
+    double value = 0;
+    bool in_diagonals = false;  // `value` counts bounding-box diagonals of the input, not object units
+};
+
 // How far samples may move to bring the image's surface nearer to the input.
 enum class FitStrength {
     // Loose for lossless files, else stiff. Lossy squares are then also fitted to their quantizer, which saves a fifth
@@ -210,6 +215,11 @@ struct EncodeOptions {
     uint32_t bits = 12;  // quantizer: bits per coordinate of the bounding box, 8..20
     RateTarget rate;
     FitStrength fit = FitStrength::kAuto;
+    // A surface that is no oriented manifold. false: it is repaired. true: encode() fails and says where it is broken.
+    bool strict = false;
+    // Boundary vertices that are not farther apart are welded. Unset: a millionth of the bounding box's diagonal, 0 if
+    // strict. 0: only vertices at equal positions are. At most a tenth of the diagonal.
+    std::optional<Length> weld_tolerance = {};
     bool density = true;  // true: more samples where a first sampling leaves more error; false: even spacing
 
     // Attribute planes. Sides: 2^j + 1, at most 4097, independent of `side`. Twice the side takes four times the bytes.
@@ -235,6 +245,24 @@ struct LevelReport {
     Defects defects = {};                  // likewise; coarser levels are measured with fewer samples
 };
 
+// What cleaning did to make the surface codable (spec/bad-meshes.md). Apart from the first three, the counts do not depend
+// on how a file shares or repeats vertices.
+struct Repairs {
+    uint64_t welded_vertices = 0;        // became part of another at the same place
+    uint64_t unreferenced_vertices = 0;  // dropped
+    uint64_t degenerate_triangles = 0;   // dropped: two corners at one place
+    uint64_t nearly_welded = 0;          // boundary points that became part of another within the weld tolerance
+    uint64_t duplicate_triangles = 0;    // dropped: they repeat another
+    uint64_t double_triangles = 0;       // dropped: they lie on the back of another, without solid between
+    uint64_t slivers = 0;                // triangles without area whose points went into the neighbours' edges
+    uint64_t crowded_edges = 0;          // edges of more than two faces, which were joined in pairs
+    uint64_t cut_edges = 0;              // those of them that keep an open face
+    uint64_t split_points = 0;           // points in which the surface touches itself
+    uint64_t one_sided_cuts = 0;         // edges along which a one-sided surface was cut open
+    uint64_t flipped_triangles = 0;      // turned over, to agree with their neighbours
+    uint64_t inside_out = 0;             // closed components that show their inner side: cavities, rooms
+};
+
 struct StageTime {
     std::string stage;
     double seconds = 0;
@@ -254,7 +282,8 @@ struct PlaneReport {
 // Figures of one run, in the order they become known.
 struct EncodeReport {
     uint64_t input_vertices = 0, input_triangles = 0;     // as read
-    uint64_t welded_vertices = 0, removed_triangles = 0;  // by cleaning
+    Repairs repairs;                                      // by cleaning
+    std::vector<std::string> warnings;                    // for people, a line each
     TopologySummary topology;                             // of the cleaned mesh
     Layout layout = Layout::kGim;                         // the one used; never kAuto
     uint32_t images = 0;                                  // kGim: one per component; else 1

@@ -40,7 +40,7 @@ TEST(Clean, SoupOfEveryGoodMeshComesBackWhole) {
         const auto result = clean(corpus::soup(input));
         ASSERT_TRUE(result.ok()) << entry.name << ": " << result.error().message;
         EXPECT_EQ(result.value().mesh.positions.size(), input.positions.size()) << entry.name;
-        EXPECT_EQ(result.value().report.welded_vertices, 3 * input.triangles.size() - input.positions.size())
+        EXPECT_EQ(result.value().report.repairs.welded_vertices, 3 * input.triangles.size() - input.positions.size())
             << entry.name;
         EXPECT_EQ(result.value().report.topology.genus, entry.genus) << entry.name;
     }
@@ -58,8 +58,8 @@ TEST(Clean, SoupWithCollapsedAndDoubleTrianglesComesBackWhole) {
     const auto result = clean(input);
     ASSERT_TRUE(result.ok()) << result.error().message;
     EXPECT_TRUE(result.value().report.topology.watertight);
-    EXPECT_EQ(result.value().report.degenerate_triangles, 1u);
-    EXPECT_EQ(result.value().report.duplicate_triangles, 1u);
+    EXPECT_EQ(result.value().report.repairs.degenerate_triangles, 1u);
+    EXPECT_EQ(result.value().report.repairs.duplicate_triangles, 1u);
 }
 
 TEST(Clean, SheetsThatOnlyTouchStayApart) {
@@ -79,32 +79,33 @@ TEST(Clean, PartsThatTouchInAPointAreNotWelded) {
     if (!input) GTEST_SKIP() << "no development models in " << GIM_MODELS_DIR;
     const auto result = clean(*input, {.require_connected = false});
     ASSERT_TRUE(result.ok()) << result.error().message;
-    EXPECT_EQ(result.value().report.welded_vertices, 0u);
+    EXPECT_EQ(result.value().report.repairs.welded_vertices, 0u);
     EXPECT_EQ(result.value().report.topology.components, 4u);
 }
 
 TEST(Clean, UselessFacesAndVerticesGo) {
     const auto result = clean(corpus::corpus().named("useless-faces").mesh());
     ASSERT_TRUE(result.ok()) << result.error().message;
-    EXPECT_EQ(result.value().report.degenerate_triangles, 1u);
-    EXPECT_EQ(result.value().report.duplicate_triangles, 1u);
-    EXPECT_EQ(result.value().report.unreferenced_vertices, 1u);
+    EXPECT_EQ(result.value().report.repairs.degenerate_triangles, 1u);
+    EXPECT_EQ(result.value().report.repairs.duplicate_triangles, 1u);
+    EXPECT_EQ(result.value().report.repairs.unreferenced_vertices, 1u);
     EXPECT_TRUE(result.value().report.topology.watertight);
 }
 
-TEST(Clean, ZeroAreaFacesWithDistinctVerticesStay) {
+TEST(Clean, CollapsedFacesGoAndTheSurfaceStaysClosed) {
     TriangleMesh input = corpus::sphere(4);
     input.positions[input.triangles[0][0]] = input.positions[input.triangles[0][1]];
     const auto result = clean(input);
     ASSERT_TRUE(result.ok()) << result.error().message;
-    EXPECT_EQ(result.value().mesh.triangles.size(), input.triangles.size());
+    EXPECT_EQ(result.value().mesh.triangles.size(), input.triangles.size() - 2);
+    EXPECT_EQ(result.value().report.repairs.degenerate_triangles, 2u);
     EXPECT_TRUE(result.value().report.topology.watertight);
 }
 
-TEST(Clean, FacesAgreeAndClosedSurfacesFaceOutwards) {
+TEST(Clean, FacesAgreeAndSurfacesKeepTheirSide) {
     const auto mixed = clean(corpus::corpus().named("misoriented").mesh());
     ASSERT_TRUE(mixed.ok()) << mixed.error().message;
-    EXPECT_EQ(mixed.value().report.flipped_triangles, 60u);
+    EXPECT_EQ(mixed.value().report.repairs.flipped_triangles, 60u);
     EXPECT_GT(signed_volume(mixed.value().mesh), 0);
 
     TriangleMesh inward = corpus::limbed_blob(32);
@@ -112,7 +113,8 @@ TEST(Clean, FacesAgreeAndClosedSurfacesFaceOutwards) {
     for (auto& p : inward.positions) p[0] += 1000;
     const auto turned = clean(inward);
     ASSERT_TRUE(turned.ok());
-    EXPECT_EQ(turned.value().report.flipped_triangles, inward.triangles.size());
+    EXPECT_EQ(turned.value().report.repairs.flipped_triangles, 0u);
+    EXPECT_EQ(turned.value().report.repairs.inside_out, 1u);
 }
 
 TEST(Clean, OpenSurfacesKeepTheSideOfMostFaces) {
@@ -120,7 +122,7 @@ TEST(Clean, OpenSurfacesKeepTheSideOfMostFaces) {
     std::swap(input.triangles[0][0], input.triangles[0][1]);
     const auto result = clean(input);
     ASSERT_TRUE(result.ok());
-    EXPECT_EQ(result.value().report.flipped_triangles, 1u);
+    EXPECT_EQ(result.value().report.repairs.flipped_triangles, 1u);
 }
 
 TEST(Clean, BrokenMeshesAreRefusedWithThePlaceAndTheAdvice) {
@@ -128,9 +130,6 @@ TEST(Clean, BrokenMeshesAreRefusedWithThePlaceAndTheAdvice) {
     EXPECT_TRUE(says(result_of("empty"), "no triangles"));
     EXPECT_TRUE(says(result_of("not-a-number"), "vertex 7 at"));
     EXPECT_TRUE(says(result_of("missing-vertex"), "triangle 11"));
-    EXPECT_TRUE(says(result_of("edge-of-three"), "edge 0-1 at (0, 0, 0.5) has 3 faces"));
-    EXPECT_TRUE(says(result_of("bow-tie"), "vertex 0 at (0, 0, 0)"));
-    EXPECT_TRUE(says(result_of("moebius"), "only one side"));
     EXPECT_TRUE(says(result_of("four-pieces"), "4 connected components"));
     EXPECT_TRUE(says(result_of("four-pieces"), "--layout mcgim"));
     EXPECT_TRUE(says(clean({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 1}}}), "repeats a vertex"));
@@ -144,13 +143,11 @@ TEST(Clean, DevelopmentModelsAreTakenOrRefusedAsTheyShould) {
         const auto result = clean(*input);
         ASSERT_TRUE(result.ok()) << name << ": " << result.error().message;
         EXPECT_EQ(result.value().mesh.triangles.size(), input->triangles.size()) << name;
-        EXPECT_EQ(result.value().report.welded_vertices + result.value().report.flipped_triangles, 0u) << name;
+        EXPECT_EQ(result.value().report.repairs.welded_vertices + result.value().report.repairs.flipped_triangles, 0u)
+            << name;
     }
     EXPECT_TRUE(says(clean(*load_model("teapot.ply")), "4 connected components"));
     EXPECT_TRUE(says(clean(*load_model("bones.ply")), "26 connected components"));
-    EXPECT_TRUE(says(clean(*load_model("broken-monk.ply")), "1 edge has more than two faces"));
-    EXPECT_TRUE(says(clean(*load_model("broken-shark.ply")), "42 vertices join"));
-    EXPECT_FALSE(clean(*load_model("broken-hornbug.ply")).ok());
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+// Says which faces continue each other across an edge, so that every edge ends with one or two faces.
+//
+// Two faces at an edge are joined. Where more meet, the pairs are chosen so that bodies stay closed: a face is joined to
+// the one at the other side of the same piece of solid. Faces of open sheets continue as straight as they can. That
+// surfaces are cut at such edges and stitched again in pairs is from Gueziec, Taubin, Lazarus, Horn. Cutting and
+// Stitching: Converting Sets of Polygons to Manifold Surfaces. 2001. The choice of the pairs is ours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "encoder/surface/mesh.h"
+#include "encoder/surface/topology_summary.h"
+
+namespace gim {
+
+struct FaceJoins {
+    std::vector<uint32_t> twin;     // per half-edge: the one that it is joined to; kNone: none
+    std::vector<uint32_t> crowded;  // one half-edge for each edge of more than two faces
+    std::vector<uint32_t> cut;      // one half-edge for each of these that keeps an open face
+};
+
+// triangles: index `positions`, three different points each. known: pairs that are joined already, as `twin`; or empty.
+// pair_crowded: false leaves edges of more than two faces as `known` has them.
+// Joins faces that run the same way along an edge only if one can be turned over without a contradiction, or if they are
+// the edge's only two. Cost: O(F log F).
+FaceJoins join_faces(const std::vector<std::array<double, 3>>& positions, const std::vector<Triangle>& triangles,
+                     std::span<const uint32_t> known, bool pair_crowded = true);
+
+// Numbers the corners of the triangles so that corners of one fan of joined faces share a number. Numbers are in the
+// order of the smallest `name` in the fan, then of the first corner. names: per corner.
+struct Fans {
+    std::vector<uint32_t> of_corner;
+    std::vector<uint32_t> name;  // per fan: the smallest name
+};
+Fans number_fans(std::span<const uint32_t> twin, const std::vector<Triangle>& triangles,
+                 std::span<const uint32_t> names);
+
+// Pieces of faces that are joined, numbered by their first face.
+Components joined_components(std::span<const uint32_t> twin);
+
+}  // namespace gim
