@@ -22,6 +22,7 @@ add_library(gim_readers STATIC
     ${folder}/gltf_uri.cpp
     ${folder}/memory_budget.cpp
     ${folder}/mesh_read.cpp
+    ${folder}/named_file.cpp
     ${folder}/ply_body.cpp
     ${folder}/ply_header.cpp
     ${folder}/polygons.cpp

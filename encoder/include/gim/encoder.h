@@ -281,21 +281,21 @@ struct PlaneReport {
 
 // Figures of one run, in the order they become known.
 struct EncodeReport {
-    uint64_t input_vertices = 0, input_triangles = 0;     // as read
-    Repairs repairs;                                      // by cleaning
-    std::vector<std::string> warnings;                    // for people, a line each
-    TopologySummary topology;                             // of the cleaned mesh
-    Layout layout = Layout::kGim;                         // the one used; never kAuto
-    uint32_t images = 0;                                  // kGim: one per component; else 1
-    uint32_t width = 0, height = 0;                       // of the largest image
-    uint64_t samples = 0;                                 // of all images
-    uint32_t side = 0, node_side = 0;                     // kGim: of the largest image
-    uint32_t cut_paths = 0;                               // of all images
-    uint32_t charts = 0;                                  // kMcgim
-    uint64_t defined_samples = 0;                         // kMcgim
-    double packing_efficiency = 0;                        // kMcgim: defined_samples / samples
-    double cut_length = 0;                                // object units
-    double stretch_efficiency = 0;   // 1 / (normalised L2 stretch)^2; 0..1, 1: uniform and isotropic
+    uint64_t input_vertices = 0, input_triangles = 0;  // as read
+    Repairs repairs;                                   // by cleaning
+    std::vector<std::string> warnings;                 // for people, a line each
+    TopologySummary topology;                          // of the cleaned mesh
+    Layout layout = Layout::kGim;                      // the one used; never kAuto
+    uint32_t images = 0;                               // kGim: one per component; else 1
+    uint32_t width = 0, height = 0;                    // of the largest image
+    uint64_t samples = 0;                              // of all images
+    uint32_t side = 0, node_side = 0;                  // kGim: of the largest image
+    uint32_t cut_paths = 0;                            // of all images
+    uint32_t charts = 0;                               // kMcgim
+    uint64_t defined_samples = 0;                      // kMcgim
+    double packing_efficiency = 0;                     // kMcgim: defined_samples / samples
+    double cut_length = 0;                             // object units
+    double stretch_efficiency = 0;                     // 1 / (normalised L2 stretch)^2; 0..1, 1: uniform and isotropic
     uint64_t folds = 0;              // triangles of decoded level 0 that look away from the input: error's folded_faces
     uint64_t folds_before_fit = 0;   // faces of the sampled image that do, before it is fitted; 0 without fit
     uint64_t flipped_triangles = 0;  // in the parametrization; always 0 if encoding succeeds
