@@ -38,7 +38,7 @@ struct RepairEffort {
 };
 // The last repair of a file, and those between the rounds of a fit. The latter must be cheap: what they spend on a fold,
 // the next rounds undo. With the last ones' price, files take 3 to 5 % more bytes and have more folds.
-inline constexpr RepairEffort kLastRepair = {6, 15, 10}, kRepairBetween = {1, 2, 5};
+inline constexpr RepairEffort kLastRepair = {8, 15, 10}, kRepairBetween = {1, 2, 5};
 
 class FoldRepair {
   public:
