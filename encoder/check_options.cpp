@@ -20,7 +20,7 @@ Result<void> check_options(const EncodeOptions& options) {
     const auto wrong = [](const std::string& what) { return Error{Stage::kInput, what}; };
     if (!is_grid(options.side))
         return wrong("the size must be 2^j + 1, from 5 to 8193 (257, 513, ...); not " + std::to_string(options.side));
-    if (!is_grid(options.node_side) || options.node_side > options.side) {
+    if (!is_grid(options.node_side)) {
         return wrong("the node grid must be 2^j + 1, from 5 to 8193; not " + std::to_string(options.node_side));
     }
     if (options.bits < 8 || options.bits > 20)

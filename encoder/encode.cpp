@@ -75,9 +75,9 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
 
 Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& given, const Progress& progress,
                        const Observer& observer) {
+    GIM_CHECK(check_options(given));
     EncodeOptions options = given;
     options.node_side = std::min(options.node_side, options.side);  // an image cannot be finer than itself
-    GIM_CHECK(check_options(options));
     return guarded(options.threads, [&] { return run_stages(mesh, options, progress, observer); });
 }
 
