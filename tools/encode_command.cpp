@@ -52,22 +52,24 @@ std::string scientific(double value) {
 std::string describe_repairs(const Repairs& repairs) {
     struct Kind {
         uint64_t count;
-        const char* name;
+        const char *one, *many;
     };
-    const Kind kinds[] = {{repairs.nearly_welded, "points welded nearby"},
-                          {repairs.degenerate_triangles, "collapsed triangles"},
-                          {repairs.duplicate_triangles, "repeated triangles"},
-                          {repairs.double_triangles, "double triangles"},
-                          {repairs.slivers, "slivers"},
-                          {repairs.crowded_edges, "edges of more than two faces"},
-                          {repairs.cut_edges, "edges cut open"},
-                          {repairs.split_points, "touching points"},
-                          {repairs.one_sided_cuts, "edges of a one-sided surface cut open"},
-                          {repairs.flipped_triangles, "triangles turned over"},
-                          {repairs.inside_out, "components inside out"}};
+    const Kind kinds[] = {{repairs.nearly_welded, "point welded nearby", "points welded nearby"},
+                          {repairs.degenerate_triangles, "collapsed triangle", "collapsed triangles"},
+                          {repairs.duplicate_triangles, "repeated triangle", "repeated triangles"},
+                          {repairs.double_triangles, "double triangle", "double triangles"},
+                          {repairs.slivers, "sliver", "slivers"},
+                          {repairs.crowded_edges, "edge of more than two faces", "edges of more than two faces"},
+                          {repairs.cut_edges, "edge cut open", "edges cut open"},
+                          {repairs.split_points, "touching point", "touching points"},
+                          {repairs.one_sided_cuts, "one-sided edge cut open", "one-sided edges cut open"},
+                          {repairs.flipped_triangles, "triangle turned over", "triangles turned over"},
+                          {repairs.inside_out, "component inside out", "components inside out"}};
     std::string text;
     for (const Kind& kind : kinds) {
-        if (kind.count > 0) text += (text.empty() ? "" : ", ") + with_thousands(kind.count) + " " + kind.name;
+        if (kind.count > 0)
+            text += (text.empty() ? "" : ", ") + with_thousands(kind.count) + " " +
+                    (kind.count == 1 ? kind.one : kind.many);
     }
     return text;
 }

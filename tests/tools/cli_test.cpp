@@ -392,19 +392,32 @@ TEST_F(Cli, HeadersOfGimFilesThatClaimTooMuchAreRefused) {
     }
 }
 
-TEST_F(Cli, MeshesThatThisLayoutCannotTakeAreDescribed) {
+TEST_F(Cli, MeshesThatAreRefusedAreDescribed) {
     for (const auto& [name, word] : std::vector<std::pair<std::string, std::string>>{
-             {"edge-of-three", "non-manifold"}, {"not-a-number", "finite"}, {"moebius", ""}}) {
+             {"edge-of-three", "more than two faces"}, {"not-a-number", "finite"}, {"moebius", "only one side"}}) {
         const std::string input = folder.file(name + ".obj");
         save_corpus_mesh(name, input);
         const std::string output = folder.file("out.gim");
         save(output, "an older file");
-        const Outcome run = gim({"encode", input, output, "--size", "33", "--node-side", "9"});
+        const Outcome run = gim({"encode", input, output, "--strict", "--size", "33", "--node-side", "9"});
         EXPECT_EQ(run.status, 1) << name;
         EXPECT_NE(run.err.find(input), std::string::npos) << run.err;
         EXPECT_NE(run.err.find(word), std::string::npos) << name << ": " << run.err;
         EXPECT_EQ(load_text(output), "an older file") << name;
     }
+}
+
+TEST_F(Cli, RepairsAreToldAndReported) {
+    const std::string input = folder.file("fin.obj"), report = folder.file("report.json");
+    save_corpus_mesh("edge-of-three", input);
+    const Outcome run = gim({"encode", input, folder.file("out.gim"), "--size", "33", "--json", report});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("warning: 1 edge has more than two faces"), std::string::npos) << run.err;
+    EXPECT_NE(run.out.find("1 edge cut open"), std::string::npos) << run.out;
+    const auto json = nlohmann::json::parse(load_text(report));
+    EXPECT_EQ(json["repairs"]["crowded_edges"], 1);
+    EXPECT_EQ(json["repairs"]["cut_edges"], 1);
+    EXPECT_FALSE(json["warnings"].empty());
 }
 
 TEST_F(Cli, DebugFolderHoldsAPictureOfEveryStateAndTheirStrip) {
