@@ -414,10 +414,10 @@ TEST_F(Cli, RepairsAreToldAndReported) {
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.err.find("warning: 1 edge has more than two faces"), std::string::npos) << run.err;
     EXPECT_NE(run.out.find("1 edge cut open"), std::string::npos) << run.out;
-    const auto json = nlohmann::json::parse(load_text(report));
-    EXPECT_EQ(json["repairs"]["crowded_edges"], 1);
-    EXPECT_EQ(json["repairs"]["cut_edges"], 1);
-    EXPECT_FALSE(json["warnings"].empty());
+    const json parsed = json::parse(load_text(report));
+    EXPECT_EQ(parsed["repairs"]["crowded_edges"], 1);
+    EXPECT_EQ(parsed["repairs"]["cut_edges"], 1);
+    EXPECT_FALSE(parsed["warnings"].empty());
 }
 
 TEST_F(Cli, DebugFolderHoldsAPictureOfEveryStateAndTheirStrip) {
