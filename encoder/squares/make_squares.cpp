@@ -1,8 +1,6 @@
 #include "encoder/squares/make_squares.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -10,22 +8,13 @@
 
 #include "encoder/squares/choose_cut.h"
 #include "encoder/squares/make_square.h"
+#include "encoder/squares/share_sides.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/topology_summary.h"
 
 namespace gim {
 
 namespace {
-
-// Returns the samples per side of a component's image. The image is as dense as that of the largest component, to a
-// power of two.
-uint32_t side_of_component(double area, double largest, uint32_t side) {
-    constexpr int kLeastExponent = 4;
-    const int most = std::countr_zero(side - 1);
-    const double halvings = area > 0 ? 0.5 * std::log2(largest / area) : most;
-    const int exponent = most - static_cast<int>(std::lround(std::min(halvings, double(most))));
-    return (1u << std::clamp(exponent, std::min(kLeastExponent, most), most)) + 1;
-}
 
 // Makes the image. Doubles its side, up to `most`, if the cut needs more room than the component's area deserves.
 Result<MadeSquare> make_roomy_square(const Mesh& mesh, EncodeOptions options, uint32_t most,
@@ -37,17 +26,23 @@ Result<MadeSquare> make_roomy_square(const Mesh& mesh, EncodeOptions options, ui
     }
 }
 
-// Makes one component's square. If `preference` is not known, it is set to the one that was chosen.
-Result<MadeSquare> make_component(const Mesh& mesh, const EncodeOptions& options, uint32_t most, StageClock& clock,
-                                  const Observer& observer, std::optional<CutPreference>& preference) {
-    if (!preference && may_choose_cut(options) && options.side == most) {
+struct SideLimits {
+    uint32_t most = 0;        // side that a component may take if its cut needs room
+    bool is_largest = false;  // no component has a larger side
+};
+
+// Makes one component's square. Chooses among cuts for the largest ones only. If `preference` is not known, it is set to the one that was chosen.
+Result<MadeSquare> make_component(const Mesh& mesh, const EncodeOptions& options, const SideLimits& limits,
+                                  StageClock& clock, const Observer& observer,
+                                  std::optional<CutPreference>& preference) {
+    if (!preference && may_choose_cut(options) && limits.is_largest) {
         if (auto choice = choose_cut(mesh, options, clock)) {
             preference = choice->preference;
             if (!observer) return std::move(choice->square);
         }
     }
     if (!preference) preference = CutPreference{};
-    return make_roomy_square(mesh, options, most, *preference, clock, observer);
+    return make_roomy_square(mesh, options, limits.most, *preference, clock, observer);
 }
 
 void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& report) {
@@ -68,7 +63,8 @@ Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, Sta
         parts.push_back(extract_component(mesh, components, k));
         areas.push_back(surface_area(parts.back()));
     }
-    const double largest = *std::max_element(areas.begin(), areas.end());
+    const std::vector<uint32_t> sides = share_sides(areas, options.side);
+    const uint32_t largest = *std::max_element(sides.begin(), sides.end());
     const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
     std::vector<SquareImage> images;
     preferences.resize(parts.size());
@@ -80,9 +76,11 @@ Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, Sta
             observer(named);
         };
         EncodeOptions part_options = options;
-        part_options.side = side_of_component(areas[k], largest, options.side);
-        auto square = make_component(parts[k], part_options, options.side, clock, observer ? with_prefix : Observer(),
-                                     preferences[k]);
+        part_options.side = sides[k];
+        part_options.node_side = std::min(options.node_side, sides[k]);
+        const SideLimits limits{options.side, sides[k] == largest};
+        auto square =
+            make_component(parts[k], part_options, limits, clock, observer ? with_prefix : Observer(), preferences[k]);
         if (!square.ok() && parts.size() == 1) return square.error();
         if (!square.ok()) {
             return Error{square.error().stage,

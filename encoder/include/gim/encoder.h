@@ -200,8 +200,8 @@ enum class FitStrength {
 
 struct EncodeOptions {
     Layout layout = Layout::kGim;
-    // kGim: samples per side of the square, 2^j + 1. Twice the side takes four times the time and memory. The largest
-    // component gets this side; smaller components get less, by area.
+    // kGim: samples per side of the square, 2^j + 1. Twice the side takes four times the time and memory. Several
+    // components share side * side samples by area; each gets at least 9 x 9, and more where its cut needs room.
     uint32_t side = 257;
     // kGim with a coarse target of PSNR, distance or bytes: also codes images of half the side, halves again while that
     // gives a better file, and keeps the best file. Takes about 1.5 times the time. The cut is chosen at the first half.
