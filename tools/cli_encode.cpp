@@ -57,10 +57,10 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
-    a.size = sub->add_option(
-                    "--size", a.command.options.side,
-                    "gim: samples per side; the next size has four times the samples. Default: 257, or with --psnr, "
-                    "--max-error or --bytes a smaller size if its file is better")
+    a.size = sub->add_option("--size", a.command.options.side,
+                             "gim: samples per side; several components share the samples of one such image. Default: "
+                             "257, or with --psnr, "
+                             "--max-error or --bytes a smaller size if its file is better")
                  ->check(side_validator(9, 4097));
     sub->add_option(
            "--node-side", a.command.options.node_side,
