@@ -20,7 +20,6 @@ namespace {
 Result<MadeSquare> make_roomy_square(const Mesh& mesh, EncodeOptions options, uint32_t most,
                                      const CutPreference& preference, StageClock& clock, const Observer& observer) {
     for (;; options.side = 2 * (options.side - 1) + 1) {
-        options.node_side = std::min(options.node_side, options.side);
         auto square = make_square(mesh, options, preference, clock, observer);
         if (square.ok() || options.side >= most) return square;
     }

@@ -23,15 +23,10 @@ Error error(std::string message) { return Error{Stage::kClean, std::move(message
 
 // A vertex for each fan of joined faces.
 CleanMesh make_vertices(const std::vector<Point>& positions, const JoinedSurface& surface) {
-    std::vector<uint32_t> names;
-    for (const Triangle& t : surface.triangles) names.insert(names.end(), t.begin(), t.end());
-    Fans fans = number_fans(surface.joins.twin, surface.places, names);
+    Fans fans = number_fans(surface.joins.twin, surface.places, surface.triangles);
     CleanMesh result;
-    for (const uint32_t name : fans.name) {
-        const Point& p = positions[surface.place[name]];
-        result.mesh.positions.emplace_back(p[0], p[1], p[2]);
-    }
-    for (size_t c = 0; c < names.size(); c += 3)
+    for (const uint32_t name : fans.name) result.mesh.positions.push_back(to_vec(positions[surface.place[name]]));
+    for (size_t c = 0; c < fans.of_corner.size(); c += 3)
         result.mesh.triangles.push_back({fans.of_corner[c], fans.of_corner[c + 1], fans.of_corner[c + 2]});
     result.source_vertex = std::move(fans.name);
     return result;
@@ -64,16 +59,14 @@ std::vector<uint32_t> find_touching(const CleanMesh& made, const std::vector<uin
 
 // Gives each fan of a vertex its own vertex, and drops vertices without faces.
 void renumber(CleanMesh& made) {
-    std::vector<uint32_t> names;
-    for (const Triangle& t : made.mesh.triangles) names.insert(names.end(), t.begin(), t.end());
-    const Fans fans = number_fans(build_topology(made.mesh).twin, made.mesh.triangles, names);
+    const Fans fans = number_fans(build_topology(made.mesh).twin, made.mesh.triangles, made.mesh.triangles);
     std::vector<Vec3> positions;
     std::vector<uint32_t> sources;
     for (const uint32_t v : fans.name) {
         positions.push_back(made.mesh.positions[v]);
         sources.push_back(made.source_vertex[v]);
     }
-    for (size_t c = 0; c < names.size(); ++c) made.mesh.triangles[c / 3][c % 3] = fans.of_corner[c];
+    for (size_t c = 0; c < fans.of_corner.size(); ++c) made.mesh.triangles[c / 3][c % 3] = fans.of_corner[c];
     made.mesh.positions = std::move(positions);
     made.source_vertex = std::move(sources);
 }

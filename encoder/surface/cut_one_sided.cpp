@@ -17,18 +17,15 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // The vertices of a surface and its edges. A side of a vertex is one of the two ways to orient its fan.
 class SidedGraph {
   public:
-    SidedGraph(const std::vector<std::array<double, 3>>& positions, const std::vector<Triangle>& triangles,
+    SidedGraph(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
                std::span<const uint32_t> twin, const Turning& turning)
         : triangles_(triangles), twin_(twin), sides_(twin.size()) {
         std::vector<uint8_t> is_contradiction(twin.size(), 0);
         for (const uint32_t h : turning.contradictions) is_contradiction[h] = is_contradiction[twin[h]] = 1;
-        for (uint32_t h = 0; h < twin.size(); ++h) {
-            const uint32_t g = twin[h];
-            if (g == kNone || g < h) continue;
-            const bool opposite = vertex(h) == vertex(next(g));
-            sides_.unite(h, opposite ? next(g) : g, is_contradiction[h]);
-            sides_.unite(next(h), opposite ? g : next(g), is_contradiction[h]);
-        }
+        for_each_join(twin, triangles, [&](const JoinedCorners& j) {
+            sides_.unite(j.start, j.start_of_twin, is_contradiction[j.half_edge]);
+            sides_.unite(j.end, j.end_of_twin, is_contradiction[j.half_edge]);
+        });
         first_.assign(twin.size() + 1, 0);
         for (uint32_t h = 0; h < twin.size(); ++h) {
             if (leads(h)) ++first_[root(h) + 1], ++first_[root(next(h)) + 1];
@@ -39,10 +36,7 @@ class SidedGraph {
         for (uint32_t h = 0; h < twin.size(); ++h) {
             if (!leads(h)) continue;
             const SignedSets::Place a = sides_.find(h), b = sides_.find(next(h));
-            const auto at = [&](uint32_t corner) {
-                const auto& p = positions[vertex(corner)];
-                return Vec3(p[0], p[1], p[2]);
-            };
+            const auto at = [&](uint32_t corner) { return to_vec(positions[vertex(corner)]); };
             const double length = twin[h] == kNone ? 0 : (at(h) - at(next(h))).norm();
             const bool changes_side = a.is_opposite != b.is_opposite;
             arcs_[filled[a.root]++] = {b.root, h, length, changes_side};
@@ -127,18 +121,17 @@ std::vector<uint32_t> sources_of(const Turning& turning, const Components& compo
 Turning find_turning(const std::vector<Triangle>& triangles, std::span<const uint32_t> twin) {
     SignedSets sheets(triangles.size());
     Turning turning{std::vector<uint8_t>(triangles.size()), {}};
-    for (uint32_t h = 0; h < twin.size(); ++h) {
-        const uint32_t g = twin[h];
-        if (g == kNone || g < h) continue;
-        const bool same_way = triangles[h / 3][h % 3] == triangles[g / 3][g % 3];
-        if (!sheets.unite(face_of(h), face_of(g), same_way)) turning.contradictions.push_back(h);
-    }
+    for_each_join(twin, triangles, [&](const JoinedCorners& j) {
+        const bool same_way = j.start_of_twin == twin[j.half_edge];
+        if (!sheets.unite(face_of(j.start), face_of(j.start_of_twin), same_way))
+            turning.contradictions.push_back(j.half_edge);
+    });
     for (uint32_t f = 0; f < triangles.size(); ++f) turning.turn[f] = sheets.find(f).is_opposite;
     return turning;
 }
 
-std::vector<uint32_t> cut_one_sided(const std::vector<std::array<double, 3>>& positions,
-                                    const std::vector<Triangle>& triangles, std::vector<uint32_t>& twin) {
+std::vector<uint32_t> cut_one_sided(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
+                                    std::vector<uint32_t>& twin) {
     std::vector<uint32_t> cut;
     const auto cut_at = [&](uint32_t h) {
         if (twin[h] == kNone) return;

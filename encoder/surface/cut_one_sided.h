@@ -4,12 +4,12 @@
 // none is left. Edges on a boundary cost nothing, so a strip is cut across where that is shorter than along.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "encoder/surface/mesh.h"
+#include "encoder/surface/weld_places.h"
 
 namespace gim {
 
@@ -24,7 +24,7 @@ Turning find_turning(const std::vector<Triangle>& triangles, std::span<const uin
 // Takes joins away until find_turning finds no contradiction. Returns a half-edge of each edge that was cut. Searches
 // from at most 64 points of each contradiction, so very long loops may be longer than need be.
 // Cost: O(64 F log F) for each loop.
-std::vector<uint32_t> cut_one_sided(const std::vector<std::array<double, 3>>& positions,
-                                    const std::vector<Triangle>& triangles, std::vector<uint32_t>& twin);
+std::vector<uint32_t> cut_one_sided(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
+                                    std::vector<uint32_t>& twin);
 
 }  // namespace gim

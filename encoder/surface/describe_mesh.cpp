@@ -16,15 +16,16 @@ std::string text_of(const Point& p) {
     return buffer.data();
 }
 
-std::string middle_of_edge(const std::vector<Point>& positions, const Triangle& triangle, uint32_t corner) {
-    const Point &p = positions[triangle[corner]], &q = positions[triangle[(corner + 1) % 3]];
-    return text_of({0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])});
+Point middle_of_edge(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, uint32_t half_edge) {
+    const Triangle& t = triangles[half_edge / 3];
+    const Point &p = positions[t[half_edge % 3]], &q = positions[t[(half_edge % 3 + 1) % 3]];
+    return {p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2, p[2] / 2 + q[2] / 2};  // the whole sum may be infinite
 }
 
 std::string describe_edge(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, uint32_t h) {
     const Triangle& t = triangles[h / 3];
     return "edge " + std::to_string(t[h % 3]) + "-" + std::to_string(t[(h % 3 + 1) % 3]) + " at " +
-           middle_of_edge(positions, t, h % 3);
+           text_of(middle_of_edge(positions, triangles, h));
 }
 
 std::string describe_defects(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,

@@ -15,7 +15,7 @@ inline constexpr size_t kListed = 3;  // most elements that a message describes
 
 std::string count_of(uint64_t n, const char* one, const char* many);
 std::string text_of(const Point& p);
-std::string middle_of_edge(const std::vector<Point>& positions, const Triangle& triangle, uint32_t corner);
+Point middle_of_edge(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, uint32_t half_edge);
 
 // Describes what is not a manifold, one line each, with advice.
 std::string describe_defects(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,

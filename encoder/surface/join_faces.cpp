@@ -25,8 +25,7 @@ struct Spoke {
 
 class Joiner {
   public:
-    Joiner(const std::vector<std::array<double, 3>>& positions, const std::vector<Triangle>& triangles,
-           std::span<const uint32_t> known)
+    Joiner(const std::vector<Point>& positions, const std::vector<Triangle>& triangles, std::span<const uint32_t> known)
         : positions_(positions),
           triangles_(triangles),
           edges_(build_edge_table(triangles, positions.size())),
@@ -103,7 +102,7 @@ class Joiner {
         if (left.empty()) return spokes;
         const uint32_t a = std::min(from(left[0]), from(next(left[0])));
         const uint32_t b = std::max(from(left[0]), from(next(left[0])));
-        const auto at = [&](uint32_t v) { return Vec3(positions_[v][0], positions_[v][1], positions_[v][2]); };
+        const auto at = [&](uint32_t v) { return to_vec(positions_[v]); };
         const Vec3 axis = (at(b) - at(a)).stableNormalized();
         const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
         for (const uint32_t h : left) {
@@ -165,7 +164,7 @@ class Joiner {
         }
     }
 
-    const std::vector<std::array<double, 3>>& positions_;
+    const std::vector<Point>& positions_;
     const std::vector<Triangle>& triangles_;
     EdgeTable edges_;
     FaceJoins joins_;
@@ -176,28 +175,26 @@ class Joiner {
 
 }  // namespace
 
-FaceJoins join_faces(const std::vector<std::array<double, 3>>& positions, const std::vector<Triangle>& triangles,
+FaceJoins join_faces(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
                      std::span<const uint32_t> known, bool pair_crowded) {
     return Joiner(positions, triangles, known).run(pair_crowded);
 }
 
 Fans number_fans(std::span<const uint32_t> twin, const std::vector<Triangle>& triangles,
-                 std::span<const uint32_t> names) {
+                 const std::vector<Triangle>& names) {
     const size_t corners = twin.size();
-    const auto vertex = [&](uint32_t corner) { return triangles[corner / 3][corner % 3]; };
     DisjointSets same(corners);
-    for (uint32_t h = 0; h < corners; ++h) {
-        const uint32_t g = twin[h];
-        if (g == kNone || g < h) continue;
-        const bool opposite = vertex(h) == vertex(next(g));
-        same.unite(h, opposite ? next(g) : g);
-        same.unite(next(h), opposite ? g : next(g));
-    }
-    std::vector<uint32_t> least(names.begin(), names.end());  // per root
+    for_each_join(twin, triangles, [&](const JoinedCorners& j) {
+        same.unite(j.start, j.start_of_twin);
+        same.unite(j.end, j.end_of_twin);
+    });
+    std::vector<uint32_t> least(corners);  // per root
+    const auto name = [&](uint32_t corner) { return names[corner / 3][corner % 3]; };
+    for (uint32_t c = 0; c < corners; ++c) least[c] = name(c);
     std::vector<uint32_t> roots;
     for (uint32_t c = 0; c < corners; ++c) {
         const uint32_t root = same.find(c);
-        least[root] = std::min(least[root], names[c]);
+        least[root] = std::min(least[root], name(c));
         if (root == c) roots.push_back(c);
     }
     std::stable_sort(roots.begin(), roots.end(), [&](uint32_t a, uint32_t b) { return least[a] < least[b]; });

@@ -20,7 +20,7 @@ Error error(std::string message) { return Error{Stage::kClean, std::move(message
 
 double diagonal_of(const std::vector<Point>& positions) {
     Eigen::AlignedBox3d box;
-    for (const Point& p : positions) box.extend(Vec3(p[0], p[1], p[2]));
+    for (const Point& p : positions) box.extend(to_vec(p));
     return box.diagonal().norm();
 }
 
@@ -125,11 +125,10 @@ class Builder {
 
     // Edges of more than two faces are not joined in a strict surface, unless the indices say how.
     Result<void> refuse_what_is_no_manifold(const JoinedSurface& surface) const {
-        std::vector<uint32_t> names;
-        for (const Triangle& t : surface.triangles) names.insert(names.end(), t.begin(), t.end());
-        const Fans fans = number_fans(surface.joins.twin, surface.places, names);
+        const Fans fans = number_fans(surface.joins.twin, surface.places, surface.triangles);
         DisjointSets same(positions_.size());
-        for (size_t c = 0; c < names.size(); ++c) same.unite(names[c], fans.name[fans.of_corner[c]]);
+        for (size_t c = 0; c < fans.of_corner.size(); ++c)
+            same.unite(surface.triangles[c / 3][c % 3], fans.name[fans.of_corner[c]]);
         std::vector<Triangle> welded = surface.triangles;
         for (Triangle& t : welded) t = {same.find(t[0]), same.find(t[1]), same.find(t[2])};
         const TopologyAnalysis topology = analyse_topology(welded, positions_.size());

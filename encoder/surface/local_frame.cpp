@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "encoder/surface/describe_mesh.h"
 #include "format/container.h"
 
 namespace gim {
@@ -84,10 +85,7 @@ Result<void> check_extent(const TriangleMesh& mesh, uint32_t bits) {
         }
     }
     const auto name = [&](size_t i) {
-        std::array<char, 96> text{};
-        std::snprintf(text.data(), text.size(), "vertex %u at (%.6g, %.6g, %.6g)", vertices[i], positions[i][0],
-                      positions[i][1], positions[i][2]);
-        return std::string(text.data());
+        return "vertex " + std::to_string(vertices[i]) + " at " + text_of(mesh.positions[vertices[i]]);
     };
     const auto is_first = [&](const Vec3& p) { return p == positions.front(); };
     if (!positions.empty() && std::all_of(positions.begin(), positions.end(), is_first)) {

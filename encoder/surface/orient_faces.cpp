@@ -29,7 +29,7 @@ std::vector<Piece> measure_pieces(const std::vector<Point>& positions, const std
                                   const std::vector<uint32_t>& twin, const std::vector<uint8_t>& turn,
                                   const Components& components) {
     std::vector<Piece> pieces(components.count);
-    const auto at = [&](uint32_t v) { return Vec3(positions[v][0], positions[v][1], positions[v][2]); };
+    const auto at = [&](uint32_t v) { return to_vec(positions[v]); };
     for (uint32_t f = 0; f < places.size(); ++f) {
         Piece& piece = pieces[components.of_face[f]];
         const Triangle& t = places[f];

@@ -22,11 +22,7 @@ std::string list_of(const std::vector<Vec3>& places) {
 std::vector<Vec3> middles_of(const std::vector<Point>& positions, const std::vector<Triangle>& triangles,
                              const std::vector<uint32_t>& half_edges) {
     std::vector<Vec3> middles;
-    for (const uint32_t h : half_edges) {
-        const Point& p = positions[triangles[h / 3][h % 3]];
-        const Point& q = positions[triangles[h / 3][(h % 3 + 1) % 3]];
-        middles.emplace_back(p[0] / 2 + q[0] / 2, p[1] / 2 + q[1] / 2, p[2] / 2 + q[2] / 2);
-    }
+    for (const uint32_t h : half_edges) middles.push_back(to_vec(middle_of_edge(positions, triangles, h)));
     return middles;
 }
 

@@ -12,6 +12,8 @@ namespace gim {
 
 using Point = std::array<double, 3>;
 
+inline Vec3 to_vec(const Point& p) { return {p[0], p[1], p[2]}; }
+
 // Equal positions, and only they, share a number: the smallest vertex there. O(V log V).
 std::vector<uint32_t> number_places(const std::vector<Point>& positions);
 

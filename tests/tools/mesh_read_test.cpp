@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/tools/gltf_builder.h"
 #include "tests/tools/test_files.h"
 
 namespace gim {
@@ -237,21 +238,6 @@ TEST(MeshRead, PointCloudsAndShortFacesAreRefused) {
 
 // ---- glTF -----------------------------------------------------------------------------------------------------------
 
-std::string base64(const std::string& data) {
-    static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (size_t i = 0; i < data.size(); i += 3) {
-        uint32_t word = 0;
-        for (size_t k = 0; k < 3; ++k) {
-            word = word << 8 | (i + k < data.size() ? static_cast<uint8_t>(data[i + k]) : 0U);
-        }
-        for (size_t k = 0; k < 4; ++k) {
-            out += i + k <= data.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-        }
-    }
-    return out;
-}
-
 // Four points of a square, indices 0 1 2 3 as bytes.
 std::string gltf(const std::string& mode, const std::string& node, uint32_t index_count = 4) {
     std::string buffer;
@@ -263,7 +249,7 @@ std::string gltf(const std::string& mode, const std::string& node, uint32_t inde
            R"({"bufferView":1,"componentType":5121,"count":)" + std::to_string(index_count) +
            R"(,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},)" +
            R"({"buffer":0,"byteOffset":48,"byteLength":4}],"buffers":[{"byteLength":52,"uri":)" +
-           R"("data:application/octet-stream;base64,)" + base64(buffer) + "\"}]}";
+           R"("data:application/octet-stream;base64,)" + test::base64(buffer) + "\"}]}";
 }
 
 TEST(MeshRead, GltfAppliesNodeTransformsAndKeepsMirroredFacesOutward) {
