@@ -9,7 +9,7 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kLeastSide = 5, kMostSide = 8193, kMostPlaneSide = 4097;
+constexpr uint32_t kLeastSide = 5, kLeastSamples = 1000, kMostPlaneSide = 4097;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ Result<void> check_options(const EncodeOptions& options) {
             break;
     }
     if (options.layout == Layout::kTiles) return wrong("the layout tiles is not there yet; take gim, mcgim or auto");
-    if (options.samples < 1000 || options.samples > (1u << 26))
+    if (options.samples < kLeastSamples || options.samples > kMostSamples)
         return wrong("the samples must be from 1000 to 67108864; not " + std::to_string(options.samples));
     if (options.charts > kMaxCharts)
         return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));

@@ -31,6 +31,51 @@ void describe_input(const TriangleMesh& input, const CleanMesh& cleaned, EncodeR
     report.topology = cleaned.report.topology;
 }
 
+// The input, ready for a layout. Positions are in the frame.
+struct Prepared {
+    const Mesh& mesh;  // clean
+    const TriangleMesh& input;
+    const LocalFrame& frame;
+    const EncodeReport& report;  // of the input alone
+};
+
+Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, EncodeOptions options, StageClock& clock,
+                          const Observer& observer) {
+    options.layout = layout.layout;
+    CutPreferences cuts;  // chosen at the first side, then kept
+    const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
+                                         const Observer& shown) -> Result<Encoded> {
+        EncodeReport report = prepared.report;
+        const bool may_grow = now.side == options.side;  // smaller sides are trials
+        GIM_TRY(images, layout.make({prepared.mesh, now, clock, shown, report, cuts, may_grow}));
+        return code_to_file(*images, {prepared.mesh, prepared.input, prepared.frame}, now, contest, clock,
+                            std::move(report));
+    };
+    return within_budget(options, [&](const EncodeOptions& now) {
+        cuts = {};
+        const bool is_first = now.rate.value == options.rate.value;
+        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+    });
+}
+
+// Returns whether the images could not be made.
+bool lacks_images(const Result<Encoded>& encoded) {
+    return !encoded.ok() && encoded.error().stage >= Stage::kCut && encoded.error().stage <= Stage::kFit;
+}
+
+// Takes another layout if the one that suits the surface cannot make images of it.
+Result<Encoded> encode_as_any(const Prepared& prepared, const EncodeOptions& options, StageClock& clock,
+                              const Observer& observer) {
+    const Layout preferred = choose_layout(prepared.mesh, options, clock);
+    auto encoded = encode_as(*find_layout(preferred), prepared, options, clock, observer);
+    for (const LayoutEntry& other : all_layouts()) {
+        if (!lacks_images(encoded) || other.layout == preferred) continue;
+        auto again = encode_as(other, prepared, options, clock, observer);
+        if (again.ok()) return again;
+    }
+    return encoded;
+}
+
 Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, const Progress& progress,
                            const Observer& observer) {
     StageClock clock(progress);
@@ -44,31 +89,18 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     EncodeReport input_report;
     describe_input(input, cleaned, input_report);
 
-    // From here on, positions are in the frame.
     const LocalFrame frame = choose_frame(cleaned.mesh.positions, options.bits);
     move_into(frame, cleaned.mesh.positions);
     const std::optional<TriangleMesh> moved = moved_into(frame, input);
-    const TriangleMesh& local_input = moved ? *moved : input;
+    const Prepared prepared{cleaned.mesh, moved ? *moved : input, frame, input_report};
     const Observer local_observer = moved_out_of(frame, observer);
 
     options.rate = resolved_target(options.rate, bounding_diagonal(cleaned.mesh));
-
-    if (options.layout == Layout::kAuto) options.layout = choose_layout(cleaned.mesh, options, clock);
+    if (options.layout == Layout::kAuto) return encode_as_any(prepared, options, clock, local_observer);
     const LayoutEntry* layout = find_layout(options.layout);
     if (layout == nullptr)
         return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim or auto"};
-    CutPreferences cuts;  // chosen at the first side, then kept
-    const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
-                                         const Observer& shown) -> Result<Encoded> {
-        EncodeReport report = input_report;
-        GIM_TRY(images, layout->make({cleaned.mesh, now, clock, shown, report, cuts}));
-        return code_to_file(*images, {cleaned.mesh, local_input, frame}, now, contest, clock, std::move(report));
-    };
-    return within_budget(options, [&](const EncodeOptions& now) {
-        cuts = {};
-        const bool is_first = now.rate.value == options.rate.value;
-        return best_of_sides(make_and_code, now, clock, is_first ? local_observer : Observer());
-    });
+    return encode_as(*layout, prepared, options, clock, local_observer);
 }
 
 }  // namespace

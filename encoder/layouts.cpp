@@ -8,6 +8,7 @@
 #include "encoder/charts/charts_layout.h"
 #include "encoder/charts/make_charts.h"
 #include "encoder/charts/multi_chart.h"
+#include "encoder/check_options.h"
 #include "encoder/squares/squares_layout.h"
 
 namespace gim {
@@ -17,12 +18,14 @@ namespace {
 using Made = Result<std::unique_ptr<LayoutImages>>;
 
 Made squares_of(const MakeImages& in) {
-    GIM_TRY(squares, make_squares(in.mesh, in.options, in.clock, in.observer, in.report, in.cuts));
+    const uint32_t most_side = in.may_grow ? kMostSide : in.options.side;
+    GIM_TRY(squares, make_squares(in.mesh, in.options, most_side, in.clock, in.observer, in.report, in.cuts));
     return squares_layout(std::move(squares), in.options);
 }
 
 Made charts_of(const MakeImages& in) {
-    GIM_TRY(charts, make_charts(in.mesh, in.options, in.clock, in.observer, in.report));
+    const uint32_t most_samples = in.may_grow ? kMostSamples : in.options.samples;
+    GIM_TRY(charts, make_charts(in.mesh, in.options, most_samples, in.clock, in.observer, in.report));
     return charts_layout(std::move(charts), in.mesh, in.options);
 }
 
@@ -33,7 +36,8 @@ double efficiency_of_squares(const Mesh& mesh, const EncodeOptions& asked, Stage
     options.rate = {};
     EncodeReport report;
     CutPreferences preferences;
-    return make_squares(mesh, options, clock, {}, report, preferences).ok() ? report.stretch_efficiency : 0;
+    const auto squares = make_squares(mesh, options, options.side, clock, {}, report, preferences);
+    return squares.ok() ? report.stretch_efficiency : 0;
 }
 
 double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {

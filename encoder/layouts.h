@@ -20,6 +20,7 @@ struct MakeImages {
     const Observer& observer;
     EncodeReport& report;  // gets the figures of the stages
     CutPreferences& cuts;  // squares: empty, or the choice of an earlier call
+    bool may_grow = true;  // takes more samples than the options say rather than fail
 };
 
 struct LayoutEntry {

@@ -25,7 +25,7 @@ bool has_obj_line(std::string_view text) {
 }
 
 MeshFormat by_content(std::string_view text) {
-    if (TextScanner(text.substr(0, kSniffed)).word_on_line() == "ply") return MeshFormat::kPly;
+    if (equals_ignoring_case(TextScanner(text.substr(0, kSniffed)).word_on_line(), "ply")) return MeshFormat::kPly;
     if (text.starts_with("glTF")) return MeshFormat::kGltf;
     if (is_whole_binary_stl(text)) return MeshFormat::kStl;
     if (is_wide_text(text) || !describe_foreign_format(text).empty()) return MeshFormat::kUnknown;

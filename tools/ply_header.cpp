@@ -46,7 +46,7 @@ size_t size_with_end_line(std::string_view text, size_t at) {
 Result<Header> read_header(std::string_view text) {
     Header header;
     TextScanner in(text);
-    if (in.word_on_line() != "ply") return Error{Stage::kInput, "it does not begin with 'ply'"};
+    if (!equals_ignoring_case(in.word_on_line(), "ply")) return Error{Stage::kInput, "it does not begin with 'ply'"};
     bool has_format = false;
     while (in.next_line()) {
         const size_t line = in.line();

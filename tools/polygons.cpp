@@ -144,7 +144,7 @@ Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& conte
                                "the " + std::to_string(corners) + " corners of its faces");
 }
 
-Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures) {
+Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
     const auto vertex_count = static_cast<int64_t>(soup.positions.size());
     if (soup.positions.empty()) return Error{Stage::kInput, "it has no vertices"};
     if (soup.sizes.empty()) return Error{Stage::kInput, "it has vertices but no faces (a point cloud?)"};
@@ -160,13 +160,9 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> tex
     const bool is_colored = !soup.face_texture.empty() || !soup.vertex_colors.empty() || !soup.face_colors.empty();
     std::vector<uint32_t> face;
     std::vector<LocalTriangle> pieces;
-    size_t first = 0;
+    size_t first = 0, dropped = 0;
     for (size_t f = 0; f < soup.sizes.size(); ++f) {
         const uint32_t size = soup.sizes[f];
-        if (size < 3) {
-            return Error{Stage::kInput, "face " + std::to_string(f) + " (counted from 0) has " + std::to_string(size) +
-                                            " corners instead of three or more"};
-        }
         face.clear();
         for (uint32_t i = 0; i < size; ++i) {
             const int64_t corner = soup.corners[first + i];
@@ -177,6 +173,7 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> tex
             }
             face.push_back(static_cast<uint32_t>(corner));
         }
+        dropped += size < 3 ? 1 : 0;
         cut_face(soup.positions, face, pieces);
         for (const LocalTriangle& piece : pieces) {
             mesh.triangles.push_back({face[piece[0]], face[piece[1]], face[piece[2]]});
@@ -184,7 +181,9 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> tex
         }
         first += size;
     }
-    if (!soup.face_texture.empty()) mesh.appearance.textures = std::move(textures);
+    if (mesh.triangles.empty()) return Error{Stage::kInput, "none of its faces has three corners"};
+    if (dropped > 0) context.warn(std::to_string(dropped) + " faces with fewer than three corners are left out");
+    if (!soup.face_texture.empty()) mesh.appearance.textures = std::move(context.textures->images);
     mesh.positions = std::move(soup.positions);
     return mesh;
 }

@@ -44,9 +44,9 @@ uint64_t corner_memory(const ReadContext& context);
 Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& context);
 
 // Keeps every vertex and every face in the file's order. Cuts larger faces into triangles inside their outline. Keeps
-// degenerate and repeated triangles, because the encoder cleans them. Fails without vertices or faces. Otherwise an
-// error names the first face that has fewer than three corners or a corner that is not a vertex. face_texture indexes
-// `textures`; the mesh gets them.
-Result<TriangleMesh> triangulate(PolygonSoup soup, std::vector<TextureImage> textures = {});
+// degenerate and repeated triangles, because the encoder cleans them. Leaves faces out that have fewer than three
+// corners (points and lines), with a warning. Fails without vertices or faces. Otherwise an error names the first face
+// that has a corner that is not a vertex. face_texture indexes the textures of the context; the mesh gets them.
+Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context);
 
 }  // namespace gim

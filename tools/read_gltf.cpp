@@ -54,14 +54,14 @@ class Reader {
         soup_.colors_tint_textures = true;
         for_each_mesh(file_.root(), [&](const MeshInstance& instance) { add_mesh(instance); });
         if (soup_.corners.empty()) throw Failure("its scene has no triangles" + damaged_uri());
-        if (!context_.textures) return triangulate(std::move(soup_));
+        if (!context_.textures) return triangulate(std::move(soup_), context_);
         // All white is the same as no colours.
         if (std::all_of(soup_.vertex_colors.begin(), soup_.vertex_colors.end(), [](const auto& c) {
                 return c == std::array<float, 3>{1, 1, 1};
             })) {
             soup_.vertex_colors.clear();
         }
-        return triangulate(std::move(soup_), std::move(context_.textures->images));
+        return triangulate(std::move(soup_), context_);
     }
 
   private:

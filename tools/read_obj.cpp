@@ -89,10 +89,10 @@ class Reader {
             return Error{Stage::kInput, "it has no 'v' and no 'f' lines"};
         }
         if (has_free_forms_) context_.warn("its free-form curves and surfaces are left out");
-        if (!textures_) return triangulate(std::move(soup_));
+        if (!textures_) return triangulate(std::move(soup_), context_);
         soup_.vertex_colors = colors_.take(context_);
         resolve_materials();
-        return triangulate(std::move(soup_), std::move(textures_->images));
+        return triangulate(std::move(soup_), context_);
     }
 
   private:
@@ -125,7 +125,8 @@ class Reader {
             // 1 is the first vertex of the file, -1 the latest one.
             face_.push_back(*index > 0 ? *index - 1 : static_cast<int64_t>(soup_.positions.size()) + *index);
         }
-        if (face_.size() < 3) return at_line(line, "a face needs three vertices (is the file cut short?)");
+        if (face_.size() < 3 && in_.is_all_read())
+            return at_line(line, "the file ends inside a face (is it cut short?)");
         if (Result<void> fits = take(0, face_.size()); !fits.ok()) return fits;
         soup_.add_face(face_);
         if (textures_) face_material_.push_back(material_);

@@ -315,7 +315,7 @@ Result<TriangleMesh> read_off(std::string_view text, ReadContext& context) {
     if (!soup.ok()) return soup.error();
     scale_colors(soup.value().vertex_colors);
     scale_colors(soup.value().face_colors);
-    return triangulate(std::move(soup.value()));
+    return triangulate(std::move(soup.value()), context);
 }
 
 }  // namespace gim

@@ -164,9 +164,9 @@ class Reader {
 
     uint64_t dropped_lines() const { return body_.dropped_lines; }
 
-    Result<TriangleMesh> mesh() && {
+    Result<TriangleMesh> mesh(ReadContext& context) && {
         if (!has_coordinates_) return Error{Stage::kInput, "its header has no vertices with x, y and z"};
-        if (!textures_) return triangulate(std::move(soup_));
+        if (!textures_) return triangulate(std::move(soup_), context);
         if (soup_.sizes.size() == face_texture_.size())
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
         if (soup_.vertex_colors.size() != soup_.positions.size()) soup_.vertex_colors.clear();
@@ -174,7 +174,7 @@ class Reader {
         if (!soup_.vertex_colors.empty()) soup_.face_colors.clear();  // those of vertices are finer
         scale_channels(soup_.vertex_colors, vertex_color_type_);
         scale_channels(soup_.face_colors, face_color_type_);
-        return triangulate(std::move(soup_), std::move(textures_->images));
+        return triangulate(std::move(soup_), context);
     }
 
   private:
@@ -307,16 +307,16 @@ Result<TriangleMesh> read_ply(std::string_view text, ReadContext& context) {
     Reader words(header, body, Records::kWords, context.textures);
     const Result<void> read = words.read_all();
     if (header.encoding != Encoding::kAscii || (read.ok() && words.is_sound())) {
-        return read.ok() ? std::move(words).mesh() : read.error();
+        return read.ok() ? std::move(words).mesh(context) : read.error();
     }
     // Perhaps lines have more numbers than the header says.
     Reader lines(header, body, Records::kLines, context.textures);
     if (!lines.read_all().ok() || lines.dropped_lines() == 0) {
-        return read.ok() ? std::move(words).mesh() : read.error();
+        return read.ok() ? std::move(words).mesh(context) : read.error();
     }
     context.warn(std::to_string(lines.dropped_lines()) +
                  " lines have more numbers than the header says; those at their ends are left out");
-    return std::move(lines).mesh();
+    return std::move(lines).mesh(context);
 }
 
 }  // namespace gim

@@ -85,7 +85,7 @@ class AsciiReader {
             }
         }
         if (!complete_) return Error{Stage::kInput, "'endsolid' is missing (is the file cut short?)"};
-        return triangulate(std::move(soup_));
+        return triangulate(std::move(soup_), context_);
     }
 
   private:

@@ -41,6 +41,8 @@ class TextScanner {
     std::string rest_of_line();
     // Skips the rest of the current line. Returns false at the end of the text.
     bool next_line();
+    // True if nothing is left, not even a line end.
+    bool is_all_read() const { return position_ == text_.size(); }
     // Skips blanks, comments and empty lines. True if nothing is left.
     bool at_end();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace {
 
 // The most levels to ask for. Charts have too few samples long before.
 constexpr uint32_t kMostLevels = 8;
+
+constexpr int kMostDoublings = 5;  // of the samples, until the charts fit
 
 // Shows the packed charts, and the surface cut open between them.
 Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& packing) {
@@ -37,10 +40,8 @@ Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& pa
     return make_snapshot("charts", std::move(caption), opened, std::move(cut), uv);
 }
 
-}  // namespace
-
-Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                const Observer& observer, EncodeReport& report) {
+Result<ChartLevels> charts_within(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                                  const Observer& observer, EncodeReport& report) {
     MultiChartOptions chart_options;
     chart_options.charts = options.charts;
     chart_options.samples = options.samples;
@@ -66,6 +67,22 @@ Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& options, 
     clock.begin(Stage::kSample);
     return make_chart_levels(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
                              kMostLevels, options.threads);
+}
+
+}  // namespace
+
+Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
+                                const Observer& observer, EncodeReport& report) {
+    EncodeOptions options = asked;
+    for (int doublings = 0;; ++doublings, options.samples *= 2) {
+        auto charts = charts_within(mesh, options, clock, observer, report);
+        if (charts.ok() && doublings > 0) {
+            report.warnings.push_back("the charts do not fit " + std::to_string(asked.samples) +
+                                      " samples; the image has up to " + std::to_string(options.samples));
+        }
+        const bool lacks_samples = !charts.ok() && charts.error().stage == Stage::kSample;
+        if (!lacks_samples || doublings == kMostDoublings || options.samples > most_samples / 2) return charts;
+    }
 }
 
 }  // namespace gim

@@ -9,8 +9,9 @@
 
 namespace gim {
 
-// Adds its figures to the report (multi_chart.h).
-Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+// Adds its figures to the report (multi_chart.h). If the charts need more samples than asked.samples, doubles them a
+// few times, up to `most_samples`, and warns.
+Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
                                 const Observer& observer, EncodeReport& report);
 
 }  // namespace gim

@@ -34,6 +34,11 @@ namespace {
 
 using Coordinates = DetailBasis::Coordinates;
 
+// Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. So the first cycle
+// moves them by less than a quantizer would. What is still folded near the end is little, and is unfolded at any price.
+constexpr double kFirstReach = 0.3;  // in steps of the quantizer
+constexpr int kFullUnfoldings = 2;   // before the last free rounds
+
 // Runs the cycles, then the last rounds. Each part runs its free rounds first, then its held ones.
 struct Schedule {
     struct Part {
@@ -280,19 +285,21 @@ void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);
     int done = 0;
-    const auto rounds = [&](const Schedule::Part& part) {
+    const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;
+    const auto rounds = [&](const Schedule::Part& part, bool is_first, bool is_last) {
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
-            if (free == Free::kAll) impl_->fitter.unfold();
+            if (free == Free::kAll && is_first) impl_->fitter.unfold(first_reach);
+            if (free == Free::kAll && is_last && k >= part.free - kFullUnfoldings) impl_->fitter.unfold();
             impl_->round(units, free);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
-    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle);
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0, false);
     if (effort == Effort::kFinal) impl_->keep_as_cycled();
-    rounds(schedule.last);
+    rounds(schedule.last, false, true);
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
     return positions;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,8 +62,8 @@ class Fitter {
     // Slides the samples around faces that look away from the surface. They move along the surface, towards the middle
     // of their neighbours. Sampling leaves such faces where the map squeezes the surface: rows are then too near to
     // each other for the map of a triangle mesh to be smooth. Samples stay near their place; else those at a tip would
-    // slide off it.
-    void unfold();
+    // slide off it: a quarter of the mean spacing away at most, and no more than `most`.
+    void unfold(double most = std::numeric_limits<double>::infinity());
 
     // Begins a round. Returns the linearised sampled distances, a damping, and a membrane of strength lambda. density:
     // samples of the reference per face of the image.

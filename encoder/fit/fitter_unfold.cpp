@@ -16,13 +16,13 @@ constexpr double kUnfoldReach = 0.25;  // in mean sample spacings, in each of th
 
 }  // namespace
 
-void Fitter::unfold() {
+void Fitter::unfold(double most) {
     const std::vector<Vec3> origin = x_;
     for (int pass = 0; pass < kUnfoldPasses; ++pass) {
         const ImageSurface image(x_, gluing_);
         const std::vector<uint32_t> steep = steep_cells(image);
         if (steep.empty()) break;
-        relax(samples_around(steep), origin, kUnfoldReach * std::sqrt(image.area() / samples_));
+        relax(samples_around(steep), origin, std::min(most, kUnfoldReach * std::sqrt(image.area() / samples_)));
     }
 }
 

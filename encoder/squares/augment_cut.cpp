@@ -200,9 +200,16 @@ State start_cut(const Surface& surface, const AugmentOptions& options) {
                              [](const State& a, const State& b) { return a.merit < b.merit; });
 }
 
+// Every cut-path that is added needs more room. So nothing is left to search if the first cut has none.
+Result<void> check_room_of(const Surface& surface, const AugmentOptions& options, const State& first) {
+    if (first.efficiency > 0) return {};
+    const auto opened = open_mesh(surface.mesh, surface.topology, first.cut);
+    if (!opened.ok()) return {};
+    return check_room(opened.value(), options.boundary);
+}
+
 // Follows every aim from the same start and keeps the best cut. Repeats this from there as long as it helps.
-State search(const Surface& surface, const AugmentOptions& options, const Progress& progress) {
-    State best = start_cut(surface, options);
+State search(const Surface& surface, const AugmentOptions& options, State best, const Progress& progress) {
     constexpr std::array<Aim, 3> kAims{Aim::kCircleMap, Aim::kSquareMap, Aim::kFarthest};
     for (double before = -1; best.merit > before;) {
         before = best.merit;
@@ -292,7 +299,10 @@ CoarseSurface coarsen(const Mesh& mesh, uint32_t vertices) {
 Result<FoundCut> find_cut(const Mesh& mesh, const Topology& topology, const CoarseSurface& surface,
                           const AugmentOptions& options, const Progress& progress) {
     const ProgressiveMesh::Compacted& coarse = surface.compacted;
-    State state = search({coarse.mesh, surface.topology}, options, progress);
+    const Surface searched{coarse.mesh, surface.topology};
+    State first = start_cut(searched, options);
+    GIM_CHECK(check_room_of(searched, options, first));
+    State state = search(searched, options, std::move(first), progress);
     FoundCut found{std::move(state.cut), std::move(state.steps), coarse.mesh};
 
     CutEdges marks(topology.twin.size(), 0);

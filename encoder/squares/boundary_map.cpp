@@ -140,6 +140,13 @@ bool choose_start(Sideband& sideband) {
     return false;
 }
 
+Error no_room(const OpenedMesh& opened, uint32_t side) {
+    const std::string text = std::to_string(side);
+    return {Stage::kBoundaryMap, "the cut has " + std::to_string(opened.paths.size()) +
+                                     " cut-paths, too many for the boundary of a " + text + " x " + text +
+                                     " image; take a larger --size, or --layout mcgim"};
+}
+
 Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& options) {
     std::vector<PathPair> pairs = pair_paths(opened, std::max(options.least_units, 1u));
     for (uint32_t node_side = options.node_side; node_side <= options.side; node_side = 2 * node_side - 1) {
@@ -154,10 +161,7 @@ Result<Sideband> lay_out(const OpenedMesh& opened, const BoundaryMapOptions& opt
         }
         if (choose_start(sideband)) return sideband;
     }
-    return Error{Stage::kBoundaryMap, "the cut has " + std::to_string(opened.paths.size()) +
-                                          " cut-paths, too many for the boundary of a " + std::to_string(options.side) +
-                                          " x " + std::to_string(options.side) +
-                                          " image; take a larger --size, or --layout mcgim"};
+    return no_room(opened, options.side);
 }
 
 // Lays the boundary out. Every vertex of the loop has an offset within its path.
@@ -352,6 +356,13 @@ std::vector<Vec2> boundary_uv(const SquareBoundary& boundary, uint32_t side) {
     std::vector<Vec2> uv(boundary.opened.mesh.positions.size(), Vec2(0.5, 0.5));
     for (size_t i = 0; i < boundary.ring.size(); ++i) uv[boundary.opened.loop[i]] = ring_point(boundary.ring[i], side);
     return uv;
+}
+
+Result<void> check_room(const OpenedMesh& opened, const BoundaryMapOptions& options) {
+    uint64_t least = 0;
+    for (const PathPair& p : pair_paths(opened, std::max(options.least_units, 1u))) least += uint64_t{p.copies} * p.least;
+    if (least > 4 * uint64_t{options.side - 1}) return no_room(opened, options.side);
+    return {};
 }
 
 Result<SquareBoundary> map_boundary(OpenedMesh opened, const BoundaryMapOptions& options) {

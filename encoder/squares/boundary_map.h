@@ -36,6 +36,9 @@ struct SquareBoundary {
     // Per vertex: bit s is set if it lies on side s (row 0, last column, last row, column 0).
     std::vector<uint8_t> sides;
 };
+// Returns an Error if the boundary is too short for the cut-paths, whatever their lengths on the surface are.
+Result<void> check_room(const OpenedMesh& opened, const BoundaryMapOptions& options);
+
 Result<SquareBoundary> map_boundary(OpenedMesh opened, const BoundaryMapOptions& options);
 
 // Returns the uv of each vertex of the opened mesh. The boundary is in place. Interior vertices are at the centre and

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -14,7 +15,8 @@ namespace gim {
 
 namespace {
 
-constexpr CutPreference kPreferences[] = {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}, {0.6, 0, 2}};
+constexpr std::array<CutPreference, 6> kPreferences = {
+    {{}, {0.4, 0}, {0.03, 0.003}, {0.4, 0.007}, {0.1, 0}, {0.6, 0, 2}}};
 
 struct Candidate {
     CutPreference preference;
@@ -50,6 +52,8 @@ std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions
 }
 
 }  // namespace
+
+std::span<const CutPreference> cut_preferences() { return kPreferences; }
 
 bool may_choose_cut(const EncodeOptions& options) {
     return is_searched(options.rate) && options.fit == FitStrength::kAuto;

@@ -5,10 +5,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "encoder/squares/make_square.h"
 
 namespace gim {
+
+// Returns the preferences to choose from; the usual one is the first.
+std::span<const CutPreference> cut_preferences();
 
 // Returns true if the file is fitted to a PSNR or a size.
 bool may_choose_cut(const EncodeOptions& options);

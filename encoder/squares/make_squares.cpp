@@ -6,8 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "encoder/squares/choose_cut.h"
-#include "encoder/squares/make_square.h"
+#include "encoder/squares/make_component.h"
 #include "encoder/squares/share_sides.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/topology_summary.h"
@@ -16,32 +15,13 @@ namespace gim {
 
 namespace {
 
-// Makes the image. Doubles its side, up to `most`, if the cut needs more room than the component's area deserves.
-Result<MadeSquare> make_roomy_square(const Mesh& mesh, EncodeOptions options, uint32_t most,
-                                     const CutPreference& preference, StageClock& clock, const Observer& observer) {
-    for (;; options.side = 2 * (options.side - 1) + 1) {
-        auto square = make_square(mesh, options, preference, clock, observer);
-        if (square.ok() || options.side >= most) return square;
-    }
-}
+std::string square_of(uint32_t side) { return std::to_string(side) + " x " + std::to_string(side); }
 
-struct SideLimits {
-    uint32_t most = 0;        // side that a component may take if its cut needs room
-    bool is_largest = false;  // no component has a larger side
-};
-
-// Makes one component's square. Chooses among cuts for the largest ones only. If `preference` is not known, it is set to the one that was chosen.
-Result<MadeSquare> make_component(const Mesh& mesh, const EncodeOptions& options, const SideLimits& limits,
-                                  StageClock& clock, const Observer& observer,
-                                  std::optional<CutPreference>& preference) {
-    if (!preference && may_choose_cut(options) && limits.is_largest) {
-        if (auto choice = choose_cut(mesh, options, clock)) {
-            preference = choice->preference;
-            if (!observer) return std::move(choice->square);
-        }
-    }
-    if (!preference) preference = CutPreference{};
-    return make_roomy_square(mesh, options, limits.most, *preference, clock, observer);
+// Names a component in a message; empty if it is the only one.
+std::string component_name(const std::vector<Mesh>& parts, size_t k) {
+    if (parts.size() == 1) return {};
+    return "component " + std::to_string(k) + " of " + std::to_string(parts.size()) + " (" +
+           std::to_string(parts[k].triangles.size()) + " triangles): ";
 }
 
 void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& report) {
@@ -53,7 +33,7 @@ void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& 
 
 }  // namespace
 
-Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, uint32_t most_side, StageClock& clock,
                              const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     std::vector<Mesh> parts;
@@ -77,14 +57,14 @@ Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, Sta
         EncodeOptions part_options = options;
         part_options.side = sides[k];
         part_options.node_side = std::min(options.node_side, sides[k]);
-        const SideLimits limits{options.side, sides[k] == largest};
+        const SideLimits limits{most_side, sides[k] == largest};
         auto square =
             make_component(parts[k], part_options, limits, clock, observer ? with_prefix : Observer(), preferences[k]);
-        if (!square.ok() && parts.size() == 1) return square.error();
-        if (!square.ok()) {
-            return Error{square.error().stage,
-                         "component " + std::to_string(k) + " of " + std::to_string(parts.size()) + " (" +
-                             std::to_string(parts[k].triangles.size()) + " triangles): " + square.error().message};
+        if (!square.ok()) return Error{square.error().stage, component_name(parts, k) + square.error().message};
+        if (square.value().image.side() > options.side) {
+            report.warnings.push_back(component_name(parts, k) + "the cut does not fit the boundary of " +
+                                      square_of(options.side) + " samples; the image has " +
+                                      square_of(square.value().image.side()));
         }
         add_to_report(square.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
         images.push_back(std::move(square.value().image));

@@ -17,6 +17,7 @@ namespace gim {
 namespace {
 
 constexpr uint32_t kBaseInterior = 60;       // interior vertices of the base mesh, if collapses allow it
+constexpr uint32_t kFewerInterior = 3;       // divides them for the next try
 constexpr int kBaseSweeps = 200;             // enough for the base mesh to converge
 constexpr double kLeastArea = 1e-3;          // smallest weight of a face, in mean face areas
 constexpr double kLeastSqueezedArea = 1e-2;  // the same for its squeeze
@@ -30,6 +31,14 @@ bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
         mesh.for_each_neighbour(v, [&](uint32_t w) { arcs.push_back({v, w}); });
     }
     return solve_tutte(arcs, fixed, uv);
+}
+
+bool is_upright(const ProgressiveMesh& mesh, const std::vector<Vec2>& uv) {
+    for (uint32_t h = 0; h < mesh.half_edge_count(); h += 3) {
+        if (!mesh.alive(face_of(h))) continue;
+        if (!(twice_signed_area(uv[mesh.origin(h)], uv[mesh.origin(h + 1)], uv[mesh.origin(h + 2)]) > 0)) return false;
+    }
+    return true;
 }
 
 // Optimises the map on a mesh that is refined step by step.
@@ -145,26 +154,20 @@ Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return {Stage::kParametrize, "no triangle is flipped"};
 }
 
-}  // namespace
-
-uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
-    return static_cast<uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-        return !(twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0);
-    }));
-}
-
-Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
-                                      const ParametrizeOptions& options, const Progress& progress) {
+// Coarsens the mesh to its boundary and some interior vertices, maps that, and refines it. Returns an Error if a face
+// has no room in double precision.
+Result<std::vector<Vec2>> map_from(uint32_t interior, const Mesh& mesh, const std::vector<uint8_t>& sides,
+                                   std::vector<Vec2> uv, const ParametrizeOptions& options, const Progress& progress) {
     ProgressiveMesh hierarchy(mesh);
-    uint32_t boundary = 0;
-    for (const uint8_t s : sides) boundary += s != 0;
-    simplify(hierarchy, mesh.positions, {boundary + kBaseInterior, true, sides});
-    if (!tutte_map(hierarchy, uv)) return Error{Stage::kParametrize, "the base map could not be solved"};
+    const auto boundary = static_cast<uint32_t>(sides.size() - std::count(sides.begin(), sides.end(), 0));
+    simplify(hierarchy, mesh.positions, {boundary + interior, true, sides});
+    if (!tutte_map(hierarchy, uv) || !is_upright(hierarchy, uv))
+        return Error{Stage::kParametrize, "a coarse version of the surface could not be mapped to the square"};
 
     Optimiser optimiser(hierarchy, mesh.positions, options, surface_area(mesh), uv);
     optimiser.sweep_until(kBaseSweeps, options.tolerance);
     const auto total = static_cast<double>(hierarchy.collapse_count());
-    double sweep_at = options.growth * (hierarchy.vertex_count() - boundary);
+    double sweep_at = options.growth * std::max(hierarchy.vertex_count() - boundary, 1u);
     while (hierarchy.coarsened()) {
         if (!optimiser.insert(hierarchy.split())) return flipped_error(mesh, uv);
         if (hierarchy.vertex_count() - boundary < sweep_at) continue;
@@ -175,6 +178,26 @@ Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_
     optimiser.sweep_until(options.final_sweeps, options.tolerance);
     if (count_flipped(mesh, uv) != 0) return flipped_error(mesh, uv);
     return uv;
+}
+
+}  // namespace
+
+uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
+    return static_cast<uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        return !(twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0);
+    }));
+}
+
+// Tutte's map shrinks by a factor with every triangle that encloses the next. Where many do, it leaves no digits to the
+// innermost faces. A coarser base mesh has fewer, and those that come back later are spread at once.
+Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
+                                      const ParametrizeOptions& options, const Progress& progress) {
+    auto map = map_from(kBaseInterior, mesh, sides, uv, options, progress);
+    for (uint32_t interior = kBaseInterior; !map.ok() && interior > 0;) {
+        interior /= kFewerInterior;
+        map = map_from(interior, mesh, sides, uv, options, progress);
+    }
+    return map;
 }
 
 }  // namespace gim

@@ -210,23 +210,22 @@ class Simplifier {
     bool allowed(uint32_t h) const {
         const uint32_t v = mesh_.origin(h), w = mesh_.target(h);
         const uint32_t left = mesh_.origin(prev(h)), right = mesh_.origin(prev(mesh_.twin(h)));
-        bool good = true;
-        mesh_.for_each_outgoing(v, [&](uint32_t out) {
+        return mesh_.all_outgoing(v, [&](uint32_t out) {
             const uint32_t a = mesh_.target(out), b = mesh_.origin(prev(out));
-            if (!options_.sides.empty() && a != w && a != left && a != right)
-                good &= (options_.sides[a] & options_.sides[w]) == 0;
-            if (a == w || b == w || !keep_shape_) return;
+            if (!options_.sides.empty() && a != w && a != left && a != right &&
+                (options_.sides[a] & options_.sides[w]) != 0)
+                return false;
+            if (a == w || b == w || !keep_shape_) return true;
             const Vec3 before = (positions_[a] - positions_[v]).cross(positions_[b] - positions_[v]);
             const Vec3 after = (positions_[a] - positions_[w]).cross(positions_[b] - positions_[w]);
             const double limit = before.norm() * after.norm();
-            good &= before.dot(after) > kLeastNormalCosine * limit || before.squaredNorm() == 0;
+            if (!(before.dot(after) > kLeastNormalCosine * limit) && before.squaredNorm() != 0) return false;
             // Needles are refused: an obtuse sliver is worth nothing to the coarse solve.
             const double longest =
                 std::max({(positions_[a] - positions_[w]).squaredNorm(), (positions_[b] - positions_[w]).squaredNorm(),
                           (positions_[a] - positions_[b]).squaredNorm()});
-            good &= after.norm() > 0.02 * longest || after.norm() >= before.norm();
+            return after.norm() > 0.02 * longest || after.norm() >= before.norm();
         });
-        return good;
     }
 
     Candidate best(uint32_t v) const {

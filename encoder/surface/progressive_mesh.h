@@ -52,6 +52,18 @@ class ProgressiveMesh {
         } while (h != first && h != kNone);
     }
 
+    // Asks holds(h) of the half-edges that leave v, counter-clockwise, until one says no. Returns whether none did.
+    template <class Holds>
+    bool all_outgoing(uint32_t v, Holds&& holds) const {
+        const uint32_t first = outgoing_[v];
+        uint32_t h = first;
+        do {
+            if (!holds(h)) return false;
+            h = twin_[prev(h)];
+        } while (h != first && h != kNone);
+        return true;
+    }
+
     // Calls visit(w) for every neighbour vertex w. A boundary vertex has one more of them than outgoing half-edges.
     template <class Visit>
     void for_each_neighbour(uint32_t v, Visit&& visit) const {

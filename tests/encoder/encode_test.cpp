@@ -56,6 +56,33 @@ TEST(Encode, EverySurfaceOfTheCorpusComesBackWithItsTopology) {
     }
 }
 
+TEST(Encode, ASquareTooSmallForTheCutGivesWayToTheNextWithAWarning) {
+    EncodeOptions options = small_options();
+    options.side = 9;
+    for (const RateTarget& rate : {RateTarget{RateTarget::Kind::kLossless, 0}, RateTarget{RateTarget::Kind::kPsnr, 30}}) {
+        options.rate = rate;
+        const auto encoded = encode(corpus::plate_with_holes(12, 2), options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        EXPECT_GT(encoded.value().report.side, 9u);
+        ASSERT_EQ(encoded.value().report.warnings.size(), 1u);
+        EXPECT_NE(encoded.value().report.warnings[0].find("9 x 9"), std::string::npos);
+        expect_topology_at_every_level(encoded.value(), "plate");
+    }
+}
+
+TEST(Encode, TooFewSamplesForTheChartsGiveWayToMoreWithAWarning) {
+    EncodeOptions options;
+    options.layout = Layout::kMcgim;
+    options.samples = 1000;
+    options.charts = 60;
+    options.rate.kind = RateTarget::Kind::kLossless;
+    const auto encoded = encode(corpus::melted_tori(8, 24), options);
+    ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+    EXPECT_GT(encoded.value().report.samples, 1000u);
+    ASSERT_EQ(encoded.value().report.warnings.size(), 1u);
+    expect_topology_at_every_level(encoded.value(), "tori");
+}
+
 TEST(Encode, EachComponentBecomesAnImageAsDenseAsTheOthers) {
     // A sphere, and another of a quarter of its radius beside it.
     TriangleMesh both = corpus::sphere(16);

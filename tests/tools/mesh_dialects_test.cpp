@@ -102,6 +102,20 @@ TEST(Dialects, LinesEndInThreeWaysAndBlanksAreMany) {
     }
 }
 
+TEST(Dialects, PointsAndLinesAmongFacesAreLeftOutWithAWarning) {
+    const std::vector<std::pair<std::string, std::string>> texts = {
+        {replaced(kPlyHead, "face 4", "face 6") + kPly.substr(kPlyHead.size()) + "2 0 1\n1 3\n", "ply"},
+        {kObj + "f 1 2\nf 3\n", "obj"},
+        {replaced(kOff, "4 4 6", "4 6 6") + "2 0 1\n1 3\n", "off"}};
+    for (const auto& [text, extension] : texts) {
+        const Read result = read_from("", text, extension);
+        EXPECT_EQ(mesh_of(result, text).triangles.size(), 4U) << text;
+        ASSERT_EQ(result.warnings.size(), 1U) << text;
+        EXPECT_NE(result.warnings[0].find("2 faces"), std::string::npos) << result.warnings[0];
+    }
+    EXPECT_NE(message(kObj + "f 1 2", "obj").find("cut short"), std::string::npos);
+}
+
 TEST(Dialects, WideTextIsNamed) {
     for (const auto& [text, extension] : kTexts) {
         std::string little, big;
@@ -361,6 +375,11 @@ std::string colored_ply(const std::string& type, const std::string& color, const
     std::string text = replaced(replaced(kPlyHead, "vertex 4", "vertex 3"), "face 4", "face 1");
     text = replaced(text, "element face", properties + "element face");
     return text + "0 0 0 " + color + "\n1 0 0 " + color + "\n0 1 0 " + color + "\n3 0 1 2\n";
+}
+
+TEST(PlyDialects, TheFirstWordMayBeInCapitals) {
+    const std::string text = "PLY" + kPly.substr(3);
+    EXPECT_EQ(read(text, "").triangles, read(kPly, "ply").triangles);
 }
 
 TEST(PlyDialects, ColorsHaveEveryTypeAndRange) {

@@ -16,7 +16,7 @@ namespace gim {
 
 // Every change to the bytes of any file raises this number. Rows of corpus/results.csv from an older coder are then
 // measured again.
-inline constexpr uint32_t kCoderVersion = 2;
+inline constexpr uint32_t kCoderVersion = 3;
 
 // The stage that reports progress or failed. `stage_name` returns the word that messages use.
 enum class Stage { kInput, kClean, kCut, kBoundaryMap, kParametrize, kSample, kFit, kPlanes, kCode, kWrite, kCompare };
@@ -202,11 +202,13 @@ struct EncodeOptions {
     Layout layout = Layout::kGim;
     // kGim: samples per side of the square, 2^j + 1. Twice the side takes four times the time and memory. Several
     // components share side * side samples by area; each gets at least 9 x 9, and more where its cut needs room.
+    // More than side * side for one component becomes a warning.
     uint32_t side = 257;
     // kGim with a coarse target of PSNR, distance or bytes: also codes images of half the side, halves again while that
     // gives a better file, and keeps the best file. Takes about 1.5 times the time. The cut is chosen at the first half.
     bool try_smaller_sides = false;
-    uint32_t samples = 66049;  // kMcgim: largest width * height
+    // kMcgim: largest width * height. Charts that do not fit get up to 32 times as many, with a warning.
+    uint32_t samples = 66049;
     // kMcgim: wanted number of charts; 0: chosen by the shape. More are made if topology or flattening needs them.
     uint32_t charts = 0;
     // kGim: side of the grid on which cut-nodes lie; more than `side` counts as `side`. All levels down to this side are

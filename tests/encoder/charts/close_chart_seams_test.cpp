@@ -28,7 +28,7 @@ ChartLevels charts_of(const char* name) {
     const Mesh mesh = clean(corpus::corpus().named(name).mesh()).value().mesh;
     StageClock clock({});
     EncodeReport report;
-    return make_charts(mesh, options, clock, {}, report).value();
+    return make_charts(mesh, options, options.samples, clock, {}, report).value();
 }
 
 // A lossy file, and the bands that it holds.

@@ -313,7 +313,7 @@ TEST(FoldRepair, ChartsAreRepairedTogether) {
     options.density = false;
     StageClock clock({});
     EncodeReport report;
-    const ChartLevels charts = make_charts(mesh, options, clock, {}, report).value();
+    const ChartLevels charts = make_charts(mesh, options, options.samples, clock, {}, report).value();
     Balance balance;
     for (const double quantizer : {16.0, 32.0, 64.0}) {
         CodingParameters parameters;

@@ -138,9 +138,12 @@ TEST(BoundaryMap, TooManyPathsForTheImageIsAClearError) {
     const Mesh mesh = clean(corpus::plate_with_holes(3, 4)).value().mesh;
     const Topology topology = build_topology(mesh);
     const CutEdges cut = initial_cut(mesh, topology, 0);
-    const auto boundary = map_boundary(open_mesh(mesh, topology, cut).value(), {5, 5});
+    const OpenedMesh opened = open_mesh(mesh, topology, cut).value();
+    const auto boundary = map_boundary(opened, {5, 5});
     ASSERT_FALSE(boundary.ok());
     EXPECT_NE(boundary.error().message.find("too many"), std::string::npos);
+    EXPECT_FALSE(check_room(opened, {5, 5}).ok());
+    EXPECT_TRUE(check_room(opened, {65, 5}).ok());
 }
 
 TEST(RingPoint, WalksTheSquareCounterClockwise) {

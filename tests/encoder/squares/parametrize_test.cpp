@@ -37,6 +37,34 @@ TEST(Parametrize, NoTriangleIsFlippedOnAnySurface) {
     }
 }
 
+// Triangles within triangles: Tutte's map shrinks each by a factor, and soon has no digits left.
+Mesh nested_triangles(uint32_t count) {
+    Mesh mesh;
+    for (uint32_t k = 0; k < count; ++k) {
+        for (int i = 0; i < 3; ++i) {
+            const double angle = 2.0943951023931953 * i + 0.3 * k, radius = 1.0 - double(k) / count;
+            mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.2 * (k % 2)});
+        }
+        for (uint32_t i = 0; k > 0 && i < 3; ++i) {
+            const uint32_t a = 3 * (k - 1) + i, b = 3 * (k - 1) + (i + 1) % 3;
+            mesh.triangles.push_back({a, b, a + 3});
+            mesh.triangles.push_back({b, b + 3, a + 3});
+        }
+    }
+    const uint32_t last = 3 * (count - 1);
+    mesh.triangles.push_back({last, last + 1, last + 2});
+    return mesh;
+}
+
+TEST(Parametrize, NoTriangleIsFlippedWhereMostOfThemEncloseTheOthers) {
+    for (const uint32_t count : {30, 100, 400}) {
+        const SquareBoundary boundary = laid_out(nested_triangles(count), 65);
+        const auto uv = parametrize(boundary.opened.mesh, boundary.sides, boundary_uv(boundary, 65), {});
+        ASSERT_TRUE(uv.ok()) << count << ": " << uv.error().message;
+        EXPECT_EQ(count_flipped(boundary.opened.mesh, uv.value()), 0u) << count;
+    }
+}
+
 TEST(Parametrize, FlatSquareComesBackAlmostIsometric) {
     const Mesh mesh = clean(corpus::terrain(40)).value().mesh;
     Mesh flat = mesh;
