@@ -57,18 +57,20 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
-    a.size = sub->add_option("--size", a.command.options.side,
-                             "gim: samples per side; several components share the samples of one such image. A cut that "
-                             "does not fit gets the next size, with a warning. Default: 257, or with --psnr, "
-                             "--max-error or --bytes a smaller size if its file is better")
-                 ->check(side_validator(9, 4097));
+    a.size =
+        sub->add_option("--size", a.command.options.side,
+                        "gim: samples per side; several components share the samples of one such image. A cut that "
+                        "does not fit gets the next size, with a warning. Default: 257, or with --psnr, "
+                        "--max-error or --bytes a smaller size if its file is better")
+            ->check(side_validator(9, 4097));
     sub->add_option(
            "--node-side", a.command.options.node_side,
            "gim: side of the coarsest level that stays closed, at most the size. The cut's nodes lie on a grid "
            "of this side, or on a finer one if the cut needs it")
         ->check(side_validator(5, 4097))
         ->capture_default_str();
-    sub->add_option("--samples", a.command.options.samples, "mcgim: most samples of the image, width * height. Charts that do not fit get more, with a warning")
+    sub->add_option("--samples", a.command.options.samples,
+                    "mcgim: most samples of the image, width * height. Charts that do not fit get more, with a warning")
         ->check(CLI::Range(1000, 1 << 26))
         ->capture_default_str();
     sub->add_option("--charts", a.command.options.charts,

@@ -360,7 +360,8 @@ std::vector<Vec2> boundary_uv(const SquareBoundary& boundary, uint32_t side) {
 
 Result<void> check_room(const OpenedMesh& opened, const BoundaryMapOptions& options) {
     uint64_t least = 0;
-    for (const PathPair& p : pair_paths(opened, std::max(options.least_units, 1u))) least += uint64_t{p.copies} * p.least;
+    for (const PathPair& p : pair_paths(opened, std::max(options.least_units, 1u)))
+        least += uint64_t{p.copies} * p.least;
     if (least > 4 * uint64_t{options.side - 1}) return no_room(opened, options.side);
     return {};
 }

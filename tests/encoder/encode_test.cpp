@@ -59,7 +59,8 @@ TEST(Encode, EverySurfaceOfTheCorpusComesBackWithItsTopology) {
 TEST(Encode, ASquareTooSmallForTheCutGivesWayToTheNextWithAWarning) {
     EncodeOptions options = small_options();
     options.side = 9;
-    for (const RateTarget& rate : {RateTarget{RateTarget::Kind::kLossless, 0}, RateTarget{RateTarget::Kind::kPsnr, 30}}) {
+    for (const RateTarget& rate :
+         {RateTarget{RateTarget::Kind::kLossless, 0}, RateTarget{RateTarget::Kind::kPsnr, 30}}) {
         options.rate = rate;
         const auto encoded = encode(corpus::plate_with_holes(12, 2), options);
         ASSERT_TRUE(encoded.ok()) << encoded.error().message;
