@@ -34,8 +34,10 @@ namespace {
 
 using Coordinates = DetailBasis::Coordinates;
 
-// Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. So the first cycle
-// moves them by less than a quantizer would. What is still folded near the end is little, and is unfolded at any price.
+// Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit of sampled
+// samples has all their folds before it, so it unfolds before each free round. A fit that continues another one has
+// fewer. Its first cycle moves samples by less than a quantizer would. What is still folded near its end is little, and
+// is unfolded at any price.
 constexpr double kFirstReach = 0.3;  // in steps of the quantizer
 constexpr int kFullUnfoldings = 2;   // before the last free rounds
 
@@ -285,14 +287,19 @@ void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);
     int done = 0;
+    const bool continues = impl_->rounds > 0 || effort == Effort::kSearch;
     const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;
     const auto rounds = [&](const Schedule::Part& part, bool is_first, bool is_last) {
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
-            if (free == Free::kAll && is_first) impl_->fitter.unfold(first_reach);
-            if (free == Free::kAll && is_last && k >= part.free - kFullUnfoldings) impl_->fitter.unfold();
+            const bool is_near_end = is_last && k >= part.free - kFullUnfoldings;
+            if (free == Free::kAll && (!continues || is_near_end)) {
+                impl_->fitter.unfold();
+            } else if (free == Free::kAll && is_first) {
+                impl_->fitter.unfold(first_reach);
+            }
             impl_->round(units, free);
         }
     };
