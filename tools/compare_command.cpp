@@ -48,7 +48,7 @@ std::string describe_folds(const Defects& defects) {
 
 std::string describe_fold(const Defects::Fold& fold) {
     char place[100];
-    std::snprintf(place, sizeof(place), "(%.6g, %.6g, %.6g)", fold.center[0], fold.center[1], fold.center[2]);
+    std::snprintf(place, sizeof(place), "(%.8g, %.8g, %.8g)", fold.center[0], fold.center[1], fold.center[2]);
     return count_triangles(fold.faces) + " near " + place;
 }
 

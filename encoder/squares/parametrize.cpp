@@ -18,6 +18,7 @@ namespace {
 
 constexpr uint32_t kBaseInterior = 60;       // interior vertices of the base mesh, if collapses allow it
 constexpr uint32_t kFewerInterior = 3;       // divides them for the next try
+constexpr double kPatientGrowth = 1.03;      // growth in these tries
 constexpr int kBaseSweeps = 200;             // enough for the base mesh to converge
 constexpr double kLeastArea = 1e-3;          // smallest weight of a face, in mean face areas
 constexpr double kLeastSqueezedArea = 1e-2;  // the same for its squeeze
@@ -189,13 +190,15 @@ uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
 }
 
 // Tutte's map shrinks by a factor with every triangle that encloses the next. Where many do, it leaves no digits to the
-// innermost faces. A coarser base mesh has fewer, and those that come back later are spread at once.
+// innermost faces. A coarser base mesh has fewer, and those that come back later are spread soon.
 Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
                                       const ParametrizeOptions& options, const Progress& progress) {
     auto map = map_from(kBaseInterior, mesh, sides, uv, options, progress);
+    ParametrizeOptions patient = options;
+    patient.growth = std::min(options.growth, kPatientGrowth);
     for (uint32_t interior = kBaseInterior; !map.ok() && interior > 0;) {
         interior /= kFewerInterior;
-        map = map_from(interior, mesh, sides, uv, options, progress);
+        map = map_from(interior, mesh, sides, uv, patient, progress);
     }
     return map;
 }

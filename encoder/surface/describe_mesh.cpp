@@ -12,7 +12,7 @@ std::string count_of(uint64_t n, const char* one, const char* many) {
 
 std::string text_of(const Point& p) {
     std::array<char, 96> buffer{};
-    std::snprintf(buffer.data(), buffer.size(), "(%.6g, %.6g, %.6g)", p[0], p[1], p[2]);
+    std::snprintf(buffer.data(), buffer.size(), "(%.8g, %.8g, %.8g)", p[0], p[1], p[2]);
     return buffer.data();
 }
 
