@@ -182,7 +182,10 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
         first += size;
     }
     if (mesh.triangles.empty()) return Error{Stage::kInput, "none of its faces has three corners"};
-    if (dropped > 0) context.warn(std::to_string(dropped) + " faces with fewer than three corners are left out");
+    if (dropped > 0) {
+        context.warn(std::to_string(dropped) + (dropped == 1 ? " face" : " faces") +
+                     " with fewer than three corners left out");
+    }
     if (!soup.face_texture.empty()) mesh.appearance.textures = std::move(context.textures->images);
     mesh.positions = std::move(soup.positions);
     return mesh;

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "encoder/base/parallel.h"
@@ -34,12 +35,13 @@ namespace {
 
 using Coordinates = DetailBasis::Coordinates;
 
-// Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit of sampled
-// samples has all their folds before it, so it unfolds before each free round. A fit that continues another one has
-// fewer. Its first cycle moves samples by less than a quantizer would. What is still folded near its end is little, and
-// is unfolded at any price.
+// Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit that
+// nothing precedes unfolds before each free round. In a search, quick fits precede and full ones follow each other. There
+// the first cycle of each moves samples by less than a quantizer would. What is still folded near its end is little,
+// and is unfolded at any price.
 constexpr double kFirstReach = 0.3;  // in steps of the quantizer
 constexpr int kFullUnfoldings = 2;   // before the last free rounds
+constexpr double kFarthest = std::numeric_limits<double>::infinity();
 
 // Runs the cycles, then the last rounds. Each part runs its free rounds first, then its held ones.
 struct Schedule {
@@ -230,6 +232,11 @@ struct CodedFit::Impl {
         return image;
     }
 
+    // Unfolds, but moves no sample farther than `reach` (in the frame). 0: does nothing.
+    void unfold(double reach) {
+        if (reach > 0) fitter.unfold(reach);
+    }
+
     // Runs one round (see the head of this file).
     void round(const Units& units, Free free) {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
@@ -287,26 +294,22 @@ void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);
     int done = 0;
-    const bool continues = impl_->rounds > 0 || effort == Effort::kSearch;
+    const bool is_alone = impl_->rounds == 0 && effort != Effort::kSearch;
     const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;
-    const auto rounds = [&](const Schedule::Part& part, bool is_first, bool is_last) {
+    // reach: how far the unfolding before a free round may move samples; before the last `full` of them, as far as it takes.
+    const auto rounds = [&](const Schedule::Part& part, double reach, int full) {
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
-            const bool is_near_end = is_last && k >= part.free - kFullUnfoldings;
-            if (free == Free::kAll && (!continues || is_near_end)) {
-                impl_->fitter.unfold();
-            } else if (free == Free::kAll && is_first) {
-                impl_->fitter.unfold(first_reach);
-            }
+            if (free == Free::kAll) impl_->unfold(is_alone || k >= part.free - full ? kFarthest : reach);
             impl_->round(units, free);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
-    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0, false);
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, 0);
     if (effort == Effort::kFinal) impl_->keep_as_cycled();
-    rounds(schedule.last, false, true);
+    rounds(schedule.last, 0, kFullUnfoldings);
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
     return positions;

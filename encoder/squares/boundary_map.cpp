@@ -62,13 +62,17 @@ double ring_length(const std::vector<PathPair>& pairs) {
     return length;
 }
 
+uint64_t least_units_of(const std::vector<PathPair>& pairs) {
+    uint64_t units = 0;
+    for (const PathPair& p : pairs) units += uint64_t{p.copies} * p.least;
+    return units;
+}
+
 // Gives every pair its share of `total` units, but not less than its minimum; largest remainders first. Returns false
 // if there are too few units.
 bool allot(std::vector<PathPair>& pairs, uint32_t total) {
     const double length = ring_length(pairs);
-    uint64_t reserved = 0;
-    for (const PathPair& p : pairs) reserved += uint64_t{p.copies} * p.least;
-    if (reserved > total) return false;
+    if (least_units_of(pairs) > total) return false;
 
     const auto ideal = [&](const PathPair& p) { return length > 0 ? total * p.length / length : 0.0; };
     int64_t missing = total;
@@ -359,10 +363,8 @@ std::vector<Vec2> boundary_uv(const SquareBoundary& boundary, uint32_t side) {
 }
 
 Result<void> check_room(const OpenedMesh& opened, const BoundaryMapOptions& options) {
-    uint64_t least = 0;
-    for (const PathPair& p : pair_paths(opened, std::max(options.least_units, 1u)))
-        least += uint64_t{p.copies} * p.least;
-    if (least > 4 * uint64_t{options.side - 1}) return no_room(opened, options.side);
+    const std::vector<PathPair> pairs = pair_paths(opened, std::max(options.least_units, 1u));
+    if (least_units_of(pairs) > 4 * uint64_t{options.side - 1}) return no_room(opened, options.side);
     return {};
 }
 

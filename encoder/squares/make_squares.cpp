@@ -62,9 +62,8 @@ Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, uin
             make_component(parts[k], part_options, limits, clock, observer ? with_prefix : Observer(), preferences[k]);
         if (!square.ok()) return Error{square.error().stage, component_name(parts, k) + square.error().message};
         if (square.value().image.side() > options.side) {
-            report.warnings.push_back(component_name(parts, k) + "the cut does not fit the boundary of " +
-                                      square_of(options.side) + " samples; the image has " +
-                                      square_of(square.value().image.side()));
+            report.warnings.push_back(component_name(parts, k) + "the surface does not fit " + square_of(options.side) +
+                                      " samples; the image has " + square_of(square.value().image.side()));
         }
         add_to_report(square.value(), all > 0 ? areas[k] / all : 1.0 / double(parts.size()), report);
         images.push_back(std::move(square.value().image));

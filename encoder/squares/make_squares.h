@@ -24,9 +24,9 @@ using CutPreferences = std::vector<std::optional<CutPreference>>;
 
 // Makes the images in the order of the components' first faces. Smaller components get smaller images. Adds its figures
 // to the report. A component whose cut does not fit its side gets the next that holds it, up to `most_side`; a side
-// above options.side becomes a warning. If the file must meet a PSNR or a size, the cuts of the largest components may be chosen among several
-// by the bytes that their images cost. `preferences` is empty, or what an earlier call chose; on return it holds what
-// was chosen.
+// above options.side becomes a warning. If the file must meet a PSNR or a size, the cuts of the largest components may be
+// chosen among several by the bytes that their images cost. `preferences` is empty, or what an earlier call chose; on
+// return it holds what was chosen.
 Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, uint32_t most_side, StageClock& clock,
                              const Observer& observer, EncodeReport& report, CutPreferences& preferences);
 

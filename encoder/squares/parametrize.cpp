@@ -7,6 +7,7 @@
 #include <string>
 
 #include "encoder/base/result.h"
+#include "encoder/surface/describe_mesh.h"
 #include "encoder/surface/progressive_mesh.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/stretch.h"
@@ -148,9 +149,8 @@ Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {
         if (twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0) continue;
         const Vec3& p = mesh.positions[t[0]];
         return {Stage::kParametrize,
-                std::to_string(count_flipped(mesh, uv)) + " triangles could not be kept upright, the first near (" +
-                    std::to_string(p.x()) + ", " + std::to_string(p.y()) + ", " + std::to_string(p.z()) +
-                    "); remove slivers there, or simplify the mesh a little"};
+                std::to_string(count_flipped(mesh, uv)) + " triangles could not be kept upright, the first near " +
+                    text_of({p.x(), p.y(), p.z()}) + "; remove slivers there, or simplify the mesh a little"};
     }
     return {Stage::kParametrize, "no triangle is flipped"};
 }

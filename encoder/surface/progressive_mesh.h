@@ -41,17 +41,6 @@ class ProgressiveMesh {
     size_t collapse_count() const { return collapses_.size(); }
     bool coarsened() const { return !collapses_.empty(); }
 
-    // Calls visit(h) for every half-edge that leaves v, counter-clockwise.
-    template <class Visit>
-    void for_each_outgoing(uint32_t v, Visit&& visit) const {
-        const uint32_t first = outgoing_[v];
-        uint32_t h = first;
-        do {
-            visit(h);
-            h = twin_[prev(h)];
-        } while (h != first && h != kNone);
-    }
-
     // Asks holds(h) of the half-edges that leave v, counter-clockwise, until one says no. Returns whether none did.
     template <class Holds>
     bool all_outgoing(uint32_t v, Holds&& holds) const {
@@ -62,6 +51,15 @@ class ProgressiveMesh {
             h = twin_[prev(h)];
         } while (h != first && h != kNone);
         return true;
+    }
+
+    // Calls visit(h) for every half-edge that leaves v, counter-clockwise.
+    template <class Visit>
+    void for_each_outgoing(uint32_t v, Visit&& visit) const {
+        all_outgoing(v, [&](uint32_t h) {
+            visit(h);
+            return true;
+        });
     }
 
     // Calls visit(w) for every neighbour vertex w. A boundary vertex has one more of them than outgoing half-edges.

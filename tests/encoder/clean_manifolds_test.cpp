@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <random>
 #include <set>
 #include <string>
 
 #include "corpus/generators.h"
-#include "encoder/code/decode_surface.h"
-#include "gim/decoder.h"
 #include "gim/encoder.h"
+#include "tests/encoder/decoded_topology.h"
 
 namespace gim {
 namespace {
@@ -222,23 +220,9 @@ uint32_t surfaces(uint32_t usual) {
     return wanted != nullptr ? static_cast<uint32_t>(std::strtoul(wanted, nullptr, 10)) : usual;
 }
 
-TriangleMesh as_input(const Mesh& mesh) {
-    TriangleMesh result;
-    for (const Vec3& p : mesh.positions) result.positions.push_back({p.x(), p.y(), p.z()});
-    result.triangles = mesh.triangles;
-    return result;
-}
-
 void expect_surface(const Result<Encoded>& encoded, const std::string& name) {
     ASSERT_TRUE(encoded.ok()) << name << ": " << encoded.error().message;
-    const auto decoded = decode_surface(encoded.value().bytes, 0);
-    ASSERT_TRUE(decoded.ok()) << name;
-    const TopologySummary topology = summarize_topology(as_input(decoded.value()));
-    const TopologySummary& expected = encoded.value().report.topology;
-    EXPECT_TRUE(topology.manifold) << name;
-    EXPECT_EQ(topology.components, expected.components) << name;
-    EXPECT_EQ(topology.boundary_loops, expected.boundary_loops) << name;
-    EXPECT_EQ(topology.genus, expected.genus) << name;
+    expect_topology(encoded.value(), 0, name);
 }
 
 void encode_all(const EncodeOptions& options, uint32_t count) {

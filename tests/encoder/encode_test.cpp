@@ -8,6 +8,7 @@
 #include "encoder/code/decode_surface.h"
 #include "gim/decoder.h"
 #include "gim/encoder.h"
+#include "tests/encoder/decoded_topology.h"
 #include "tests/models.h"
 
 namespace gim {
@@ -22,25 +23,12 @@ EncodeOptions small_options() {
     return options;
 }
 
-TriangleMesh as_input(const Mesh& mesh) {
-    TriangleMesh result;
-    for (const Vec3& p : mesh.positions) result.positions.push_back({p.x(), p.y(), p.z()});
-    result.triangles = mesh.triangles;
-    return result;
-}
-
 // At every level that the file says it can close, the decoded surface has the input's topology.
 void expect_topology_at_every_level(const Encoded& encoded, const std::string& name) {
     const auto coarsest = coarsest_level(encoded.bytes);
     ASSERT_TRUE(coarsest.ok()) << name;
     for (uint32_t level = 0; level <= coarsest.value(); ++level) {
-        const auto decoded = decode_surface(encoded.bytes, level);
-        ASSERT_TRUE(decoded.ok()) << name << " level " << level;
-        const TopologySummary topology = summarize_topology(as_input(decoded.value()));
-        EXPECT_TRUE(topology.manifold) << name << " level " << level;
-        EXPECT_EQ(topology.components, encoded.report.topology.components) << name << " level " << level;
-        EXPECT_EQ(topology.boundary_loops, encoded.report.topology.boundary_loops) << name << " level " << level;
-        EXPECT_EQ(topology.genus, encoded.report.topology.genus) << name << " level " << level;
+        expect_topology(encoded, level, name);
     }
 }
 
