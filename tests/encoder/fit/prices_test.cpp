@@ -84,7 +84,7 @@ TEST(Prices, LargerDetailsAndFinerStepsCostLess) {
         ASSERT_GT(cheap.price[i], 0);
         ASSERT_LT(cheap.price[i], dear.price[i]);
         ASSERT_LT(fine.price[i], cheap.price[i]);
-        if (DetailBasis::is_tangential(i)) {
+        if (basis.is_tangential(i)) {
             ASSERT_EQ(held.inverse[i], 0);
         } else {
             ASSERT_EQ(held.inverse[i], cheap.inverse[i]);
