@@ -1,4 +1,5 @@
 #include "encoder/fit/prices.h"
+#include "encoder/fit/detail_basis.h"
 
 #include <gtest/gtest.h>
 
