@@ -1,5 +1,4 @@
 #include "encoder/fit/prices.h"
-#include "encoder/fit/detail_basis.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "encoder/fit/detail_basis.h"
 #include "tests/encoder/grid_images.h"
 
 namespace gim {
