@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "encoder/surface/closest_point.h"
+
 namespace gim {
 
 using OpenMesh::HalfedgeHandle;
@@ -14,6 +16,9 @@ namespace {
 // Weight of the moved area times the squared distance, against the quadric error. Larger values lose the tips of limbs.
 constexpr double kLengthWeight = 1e-5;
 // Weight of a plane across a feature, in squared lengths, against the areas of the faces.
+// Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
+// near its root, so the quadric does not notice that its tip vanishes.
+constexpr double kTipWeight = 1;
 constexpr double kFeatureWeight = 1;
 // Cosine of the largest angle by which a collapse may turn a face.
 constexpr double kLeastCosine = 0.2, kLeastLooseCosine = -0.3;
@@ -77,13 +82,13 @@ void CollapseCost::gather(VertexHandle v) {
         const bool has_face = !mesh_.is_boundary(h);
         spokes_[i] = {h,
                       end,
-                      mesh_.point(end),
+                      mesh_.place(end),
                       mesh_.is_feature(mesh_.edge_handle(h)),
                       has_face && mesh_.is_feature(mesh_.edge_handle(mesh_.next_halfedge_handle(h))),
                       Vec3::Zero()};
     }
     for (size_t i = 0; i < face_count(); ++i)
-        spokes_[i].normal = (spokes_[i].at - mesh_.point(v)).cross(spokes_[after(i)].at - mesh_.point(v));
+        spokes_[i].normal = (spokes_[i].at - mesh_.place(v)).cross(spokes_[after(i)].at - mesh_.place(v));
 }
 
 // Whether the rim runs from spoke a to spoke b, in either direction.
@@ -146,10 +151,23 @@ double CollapseCost::fan(size_t onto) const {
     return angle;
 }
 
+// The squared distance from the vertex to the faces that take the place of its own.
+double CollapseCost::squared_gap(size_t onto) const {
+    double least = (mesh_.place(centre_) - spokes_[onto].at).squaredNorm();
+    for (size_t i = 0; i < face_count(); ++i) {
+        if (vanishes(i, onto)) continue;
+        const Vec3 point =
+            closest_point_on_triangle(mesh_.place(centre_), spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at).point;
+        least = std::min(least, (mesh_.place(centre_) - point).squaredNorm());
+    }
+    return least;
+}
+
 std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const {
     if (rules >= Rules::kTopology) return 1;
     const bool loose = rules >= Rules::kLooseShape;
-    const Vec3 &old_place = mesh_.point(centre_), &new_place = spokes_[onto].at;
+    const Vec3 old_place = mesh_.place(centre_);
+    const Vec3& new_place = spokes_[onto].at;
     double worst = 1;
     for (size_t i = 0; i < face_count(); ++i) {
         if (vanishes(i, onto)) continue;
@@ -194,10 +212,13 @@ CollapseCost::Candidate CollapseCost::best(VertexHandle v, Rules rules) {
         const Vec3& place = spokes_[i].at;
         const VertexShare& other = shares_[static_cast<size_t>(spokes_[i].end.idx())];
         const double error = std::max(0.0, mine.planes(place) + other.planes(place));
-        const double length = mine.area * (mesh_.point(v) - place).squaredNorm();
-        double cost = (error + kLengthWeight * length) * valence_factor(i);
+        const double length = mine.area * (mesh_.place(v) - place).squaredNorm();
+        const double irregular = valence_factor(i);
+        double cost = (error + kLengthWeight * length) * irregular;
         // The shape can only make it dearer.
         if ((result.edge.is_valid() && cost >= result.cost) || !features_allow(i, rules)) continue;
+        cost += kTipWeight * mine.area * squared_gap(i) * irregular;
+        if (result.edge.is_valid() && cost >= result.cost) continue;
         const auto shape = shape_factor(i, rules);
         if (!shape) continue;
         cost *= *shape;

@@ -71,6 +71,7 @@ class CollapseCost {
     bool boundary_stays_long(size_t onto) const;
     // How much the shape of the new faces multiplies the cost; nothing if they are forbidden.
     std::optional<double> shape_factor(size_t onto, Rules rules) const;
+    double squared_gap(size_t onto) const;
     double valence_factor(size_t onto) const;
     double fan(size_t onto) const;
 

@@ -7,7 +7,7 @@ CollapseMesh::CollapseMesh(const Mesh& mesh, const std::vector<bool>& sharp) {
     const Topology topology = build_topology(mesh);
     const auto faces = static_cast<uint32_t>(mesh.triangles.size());
     reserve(mesh.positions.size(), 3 * faces / 2 + 1, faces);
-    for (const Vec3& p : mesh.positions) add_vertex(p);
+    for (const Vec3& p : mesh.positions) add_vertex({p[0], p[1], p[2]});
     add_edges(mesh, topology, sharp);
     for (uint32_t f = 0; f < faces; ++f) {
         const FaceHandle face = new_face();

@@ -1,9 +1,8 @@
 // A triangle mesh that half-edge collapses coarsen: OpenMesh's half-edges, and which of its edges are features.
 #pragma once
 
+#include <OpenMesh/Core/Geometry/VectorT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-// It extends a template of the header above.
-#include <OpenMesh/Core/Geometry/EigenVectorT.hh>
 #include <array>
 #include <vector>
 
@@ -12,9 +11,8 @@
 namespace gim {
 
 struct CollapseTraits : OpenMesh::DefaultTraits {
-    using Point = Vec3;
-    using Normal = Vec3;
-    using TexCoord1D = double;
+    using Point = OpenMesh::Vec3d;
+    using Normal = OpenMesh::Vec3d;
     VertexAttributes(OpenMesh::Attributes::Status);
     HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
     EdgeAttributes(OpenMesh::Attributes::Status);
@@ -27,6 +25,7 @@ class CollapseMesh : public OpenMesh::TriMesh_ArrayKernelT<CollapseTraits> {
     // In: an oriented 2-manifold; per half-edge 3f+i whether it lies on a crease (empty: no creases). O(F log F).
     CollapseMesh(const Mesh& mesh, const std::vector<bool>& sharp);
 
+    Vec3 place(VertexHandle v) const { return {point(v)[0], point(v)[1], point(v)[2]}; }
     bool is_crease(EdgeHandle e) const { return crease_[static_cast<size_t>(e.idx())] != 0; }
     bool is_feature(EdgeHandle e) const { return is_crease(e) || is_boundary(e); }
     // Numbers of features and of edges that end at v.
