@@ -18,16 +18,18 @@ constexpr double kLengthWeight = 1e-5;
 // Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 // Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
 // near its root, so the quadric does not notice that its tip vanishes.
-constexpr double kTipWeight = 1;
+constexpr double kTipWeight = 3;
 constexpr double kFeatureWeight = 1;
 // Cosine of the largest angle by which a collapse may turn a face.
 constexpr double kLeastCosine = 0.2, kLeastLooseCosine = -0.3;
 // Longest edge over height, times sqrt(3)/2: 1 for the equilateral triangle. Above kNeedle only what is no worse than before.
 constexpr double kNeedle = 12, kLooseNeedle = 60;
 constexpr double kWidestFan = 1.5 * std::numbers::pi, kWidestLooseFan = 1.9 * std::numbers::pi;
-constexpr double kNeedleWeight = 0.05;
+constexpr double kNeedleWeight = 0.15;
 constexpr double kFanWeight = 0.5;
-constexpr double kValenceWeight = 0.06;
+constexpr double kValenceWeight = 0.1;
+// No quad may cut a vertex of three edges, so it often leaves a neighbour with two quads.
+constexpr double kThreeEdgesPenalty = 20;
 
 double squared(double x) { return x * x; }
 
@@ -188,7 +190,8 @@ std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const
 
 double CollapseCost::valence_factor(size_t onto) const {
     const auto irregularity = [&](VertexHandle v, double edges) {
-        return squared(edges - (mesh_.is_boundary(v) ? 4 : 6));
+        if (mesh_.is_boundary(v)) return squared(edges - 4);
+        return squared(edges - 6) + (edges <= 3 ? kThreeEdgesPenalty : 0);
     };
     const auto edges = [&](VertexHandle v) { return static_cast<double>(mesh_.edge_count(v)); };
     const VertexHandle u = spokes_[onto].end;
@@ -201,7 +204,7 @@ double CollapseCost::valence_factor(size_t onto) const {
         ++sides;
     }
     change += irregularity(u, edges(u) + edges(centre_) - 2 - sides);
-    return std::exp(kValenceWeight * std::clamp(change, -20.0, 40.0));
+    return std::exp(kValenceWeight * std::clamp(change, -20.0, 30.0));
 }
 
 CollapseCost::Candidate CollapseCost::best(VertexHandle v, Rules rules) {
