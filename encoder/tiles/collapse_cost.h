@@ -48,6 +48,9 @@ class CollapseCost {
     // Returns the cheapest collapse of v onto a neighbour. O(valence^2).
     Candidate best(OpenMesh::VertexHandle v, Rules rules);
 
+    // What one collapse costs; nothing if it is forbidden. O(valence).
+    std::optional<double> cost_of(OpenMesh::HalfedgeHandle h, Rules rules);
+
     // The angle at into of the faces that the collapse leaves in place of vertex's, in radians.
     double fan_angle(OpenMesh::HalfedgeHandle h);
 
@@ -73,13 +76,18 @@ class CollapseCost {
     std::optional<double> shape_factor(size_t onto, Rules rules) const;
     double squared_gap(size_t onto) const;
     double valence_factor(size_t onto) const;
+    // Whether the collapse leaves faces that cannot be paired without a vertex of two quads.
+    bool makes_doublet(size_t onto);
     double fan(size_t onto) const;
+    // Nothing if it is forbidden, or costs no less than `limit`.
+    std::optional<double> cost(size_t onto, Rules rules, double limit);
 
     CollapseMesh& mesh_;  // its own check marks vertices, and leaves no other trace
     const std::vector<VertexShare>& shares_;
     OpenMesh::VertexHandle centre_;
     std::vector<OpenMesh::HalfedgeHandle> outgoing_;
     std::vector<Spoke> spokes_;
+    std::vector<OpenMesh::HalfedgeHandle> ring_;
     bool closed_ = true;
 };
 

@@ -18,6 +18,7 @@ struct QuadPairing {
     std::vector<std::array<uint32_t, 2>> triangles;  // per quad: its base triangles, corners 0 1 2 and 0 2 3
     std::vector<std::array<uint32_t, 2>> crossed;    // creases that had to become diagonals
     std::vector<uint32_t> doublets;                  // vertices, not on a boundary, where only two quads meet
+    uint32_t twins = 0;                              // pairs of quads with the same four vertices
     std::vector<uint32_t> unpaired;                  // triangles of components that have no perfect matching
 };
 
