@@ -41,14 +41,14 @@ struct QuadComplex {
 // What is wrong with a list of quads.
 struct QuadFault {
     enum class Kind {
-        kSound,
+        kFine,
         kNoVertex,       // a corner names a vertex that there is not
         kRepeated,       // two corners of a tile are one vertex
         kCrowdedEdge,    // two half-edges run along an edge in the same direction
         kUnusedVertex,   // no tile has the vertex
         kTouchingTiles,  // the tiles at a vertex are not one fan
     };
-    Kind kind = Kind::kSound;
+    Kind kind = Kind::kFine;
     uint32_t at = 0;  // kNoVertex, kRepeated: the tile; kCrowdedEdge: the half-edge; else the vertex
 };
 
