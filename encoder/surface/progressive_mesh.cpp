@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <queue>
 
+#include "encoder/surface/quadric.h"
+
 namespace gim {
 
 ProgressiveMesh::ProgressiveMesh(const Mesh& mesh) : alive_(mesh.triangles.size(), 1) {
@@ -124,22 +126,6 @@ namespace {
 constexpr double kShortEdgeWeight = 3e-3;
 // A collapse must not turn a face by more than about 78 degrees.
 constexpr double kLeastNormalCosine = 0.2;
-
-struct Quadric {
-    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-    Vec3 b = Vec3::Zero();
-    double c = 0;
-    void add_plane(const Vec3& n, double d, double weight) {
-        a += weight * n * n.transpose();
-        b += weight * d * n;
-        c += weight * d * d;
-    }
-    Quadric& operator+=(const Quadric& o) {
-        a += o.a, b += o.b, c += o.c;
-        return *this;
-    }
-    double operator()(const Vec3& p) const { return p.dot(a * p) + 2 * b.dot(p) + c; }
-};
 
 class Simplifier {
   public:

@@ -1,0 +1,240 @@
+#include "encoder/tiles/collapse_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "encoder/surface/closest_point.h"
+
+namespace gim {
+
+using OpenMesh::HalfedgeHandle;
+using OpenMesh::VertexHandle;
+
+namespace {
+
+// Weight of the moved area times the squared distance, against the quadric error. Larger values lose the tips of limbs.
+constexpr double kLengthWeight = 1e-5;
+// Weight of a plane across a feature, in squared lengths, against the areas of the faces.
+// Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
+// near its root, so the quadric does not notice that its tip vanishes.
+constexpr double kTipWeight = 3;
+constexpr double kFeatureWeight = 1;
+// Cosine of the largest angle by which a collapse may turn a face.
+constexpr double kLeastCosine = 0.2, kLeastLooseCosine = -0.3;
+// Longest edge over height, times sqrt(3)/2: 1 for the equilateral triangle. Above kNeedle only what is no worse than before.
+constexpr double kNeedle = 12, kLooseNeedle = 60;
+constexpr double kWidestFan = 1.5 * std::numbers::pi, kWidestLooseFan = 1.9 * std::numbers::pi;
+constexpr double kNeedleWeight = 0.15;
+constexpr double kFanWeight = 0.5;
+constexpr double kValenceWeight = 0.1;
+// No quad may cut a vertex of three edges, so it often leaves a neighbour with two quads.
+constexpr double kThreeEdgesPenalty = 20;
+
+double squared(double x) { return x * x; }
+
+// The longest squared edge over twice the area, 1 for an equilateral triangle.
+double slimness(const Vec3& a, const Vec3& b, const Vec3& c, double twice_area) {
+    const double longest = std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()});
+    return twice_area > 0 ? 0.5 * std::numbers::sqrt3 * longest / twice_area : HUGE_VAL;
+}
+
+double angle_at(const Vec3& apex, const Vec3& a, const Vec3& b) {
+    const Vec3 u = a - apex, v = b - apex;
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+}  // namespace
+
+std::vector<VertexShare> vertex_shares(const Mesh& mesh, const std::vector<bool>& sharp) {
+    const Topology topology = build_topology(mesh);
+    std::vector<VertexShare> shares(mesh.positions.size());
+    const auto add_plane = [&](uint32_t v, const Vec3& normal, double weight) {
+        shares[v].planes.add_plane(normal, -normal.dot(mesh.positions[v]), weight);
+    };
+    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        const Vec3 cross =
+            (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+        const double twice_area = cross.norm();
+        if (!(twice_area > 0)) continue;
+        for (uint32_t i = 0; i < 3; ++i) {
+            shares[t[i]].area += twice_area / 6;
+            add_plane(t[i], cross / twice_area, twice_area / 6);
+            const uint32_t h = 3 * f + i, twin = topology.twin[h];
+            const bool feature = twin == kNone || (!sharp.empty() && (sharp[h] || sharp[twin]));
+            const Vec3 along = mesh.positions[to(mesh, h)] - mesh.positions[from(mesh, h)];
+            if (!feature || !(along.squaredNorm() > 0)) continue;
+            const Vec3 across = along.cross(cross).normalized();
+            add_plane(from(mesh, h), across, kFeatureWeight * along.squaredNorm());
+            add_plane(to(mesh, h), across, kFeatureWeight * along.squaredNorm());
+        }
+    }
+    return shares;
+}
+
+void CollapseCost::gather(VertexHandle v) {
+    centre_ = v;
+    closed_ = !mesh_.is_boundary(v);
+    mesh_.outgoing(v, outgoing_);
+    spokes_.resize(outgoing_.size());
+    for (size_t i = 0; i < spokes_.size(); ++i) {
+        const HalfedgeHandle h = outgoing_[i];
+        const VertexHandle end = mesh_.to_vertex_handle(h);
+        const bool has_face = !mesh_.is_boundary(h);
+        spokes_[i] = {h,
+                      end,
+                      mesh_.place(end),
+                      mesh_.is_feature(mesh_.edge_handle(h)),
+                      has_face && mesh_.is_feature(mesh_.edge_handle(mesh_.next_halfedge_handle(h))),
+                      Vec3::Zero()};
+    }
+    for (size_t i = 0; i < face_count(); ++i)
+        spokes_[i].normal = (spokes_[i].at - mesh_.place(v)).cross(spokes_[after(i)].at - mesh_.place(v));
+}
+
+// Whether the rim runs from spoke a to spoke b, in either direction.
+bool CollapseCost::joins(size_t a, size_t b) const {
+    return (a < face_count() && after(a) == b) || (b < face_count() && after(b) == a);
+}
+
+// Whether the edge from the kept vertex to that spoke's end is a feature after the collapse.
+bool CollapseCost::feature_after(size_t spoke, size_t onto) const {
+    bool feature = spokes_[spoke].feature;
+    if (spoke < face_count() && after(spoke) == onto) feature |= spokes_[spoke].rim_feature;
+    if (onto < face_count() && after(onto) == spoke) feature |= spokes_[onto].rim_feature;
+    return feature;
+}
+
+// A boundary of three edges has no legal collapse, so a component with such boundaries might keep an odd number of faces.
+bool CollapseCost::boundary_stays_long(size_t onto) const {
+    HalfedgeHandle h = spokes_[onto].edge;
+    if (!mesh_.is_boundary(mesh_.edge_handle(h))) return true;
+    if (!mesh_.is_boundary(h)) h = mesh_.opposite_halfedge_handle(h);
+    HalfedgeHandle walk = h;
+    for (int i = 0; i < 4; ++i) {
+        walk = mesh_.next_halfedge_handle(walk);
+        if (walk == h) return false;
+    }
+    return true;
+}
+
+bool CollapseCost::features_allow(size_t onto, Rules rules) const {
+    const uint32_t features = mesh_.feature_count(centre_);
+    if (!closed_) {
+        if (!mesh_.is_boundary(mesh_.edge_handle(spokes_[onto].edge)) || !boundary_stays_long(onto)) return false;
+    } else if (features != 0 && rules < Rules::kTopology && !spokes_[onto].feature) {
+        return false;
+    }
+    if (features != 0 && features != 2 && !(features == 1 && rules >= Rules::kLooseShape) && rules < Rules::kTopology)
+        return false;
+    if (rules >= Rules::kTopology) return true;
+    for (size_t i = 0; i < spokes_.size(); ++i) {
+        if (i != onto && joins(i, onto) && spokes_[i].feature) {
+            // Two features would become one.
+            const bool rim =
+                (i < face_count() && after(i) == onto) ? spokes_[i].rim_feature : spokes_[onto].rim_feature;
+            if (rim) return false;
+        }
+    }
+    for (size_t i = 0; i < face_count(); ++i) {
+        if (vanishes(i, onto) || !spokes_[i].rim_feature) continue;
+        const bool before = spokes_[i].feature && spokes_[after(i)].feature;
+        if (!before && feature_after(i, onto) && feature_after(after(i), onto)) return false;
+    }
+    return true;
+}
+
+double CollapseCost::fan(size_t onto) const {
+    double angle = 0;
+    for (size_t i = 0; i < face_count(); ++i) {
+        if (!vanishes(i, onto)) angle += angle_at(spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at);
+    }
+    return angle;
+}
+
+// The squared distance from the vertex to the faces that take the place of its own.
+double CollapseCost::squared_gap(size_t onto) const {
+    double least = (mesh_.place(centre_) - spokes_[onto].at).squaredNorm();
+    for (size_t i = 0; i < face_count(); ++i) {
+        if (vanishes(i, onto)) continue;
+        const Vec3 point =
+            closest_point_on_triangle(mesh_.place(centre_), spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at).point;
+        least = std::min(least, (mesh_.place(centre_) - point).squaredNorm());
+    }
+    return least;
+}
+
+std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const {
+    if (rules >= Rules::kTopology) return 1;
+    const bool loose = rules >= Rules::kLooseShape;
+    const Vec3 old_place = mesh_.place(centre_);
+    const Vec3& new_place = spokes_[onto].at;
+    double worst = 1;
+    for (size_t i = 0; i < face_count(); ++i) {
+        if (vanishes(i, onto)) continue;
+        const Vec3 &a = spokes_[i].at, &b = spokes_[after(i)].at, &before = spokes_[i].normal;
+        const Vec3 now = (a - new_place).cross(b - new_place);
+        const double areas = before.norm() * now.norm();
+        if (before.squaredNorm() > 0 && !(before.dot(now) > (loose ? kLeastLooseCosine : kLeastCosine) * areas))
+            return {};
+        const double slim = slimness(a, b, new_place, now.norm());
+        if (slim > (loose ? kLooseNeedle : kNeedle) && slim > slimness(a, b, old_place, before.norm())) return {};
+        worst = std::max(worst, slim);
+    }
+    const double angle = fan(onto);
+    if (angle > (loose ? kWidestLooseFan : kWidestFan)) return {};
+    return 1 + kNeedleWeight * squared(std::min(worst, kLooseNeedle) - 1) +
+           kFanWeight * squared(squared(angle / std::numbers::pi));
+}
+
+double CollapseCost::valence_factor(size_t onto) const {
+    const auto irregularity = [&](VertexHandle v, double edges) {
+        if (mesh_.is_boundary(v)) return squared(edges - 4);
+        return squared(edges - 6) + (edges <= 3 ? kThreeEdgesPenalty : 0);
+    };
+    const auto edges = [&](VertexHandle v) { return static_cast<double>(mesh_.edge_count(v)); };
+    const VertexHandle u = spokes_[onto].end;
+    double change = -irregularity(centre_, edges(centre_)) - irregularity(u, edges(u));
+    double sides = 0;
+    for (size_t i = 0; i < spokes_.size(); ++i) {
+        if (i == onto || !joins(i, onto)) continue;
+        const VertexHandle w = spokes_[i].end;
+        change += irregularity(w, edges(w) - 1) - irregularity(w, edges(w));
+        ++sides;
+    }
+    change += irregularity(u, edges(u) + edges(centre_) - 2 - sides);
+    return std::exp(kValenceWeight * std::clamp(change, -20.0, 30.0));
+}
+
+CollapseCost::Candidate CollapseCost::best(VertexHandle v, Rules rules) {
+    gather(v);
+    Candidate result;
+    const VertexShare& mine = shares_[static_cast<size_t>(v.idx())];
+    for (size_t i = 0; i < spokes_.size(); ++i) {
+        const Vec3& place = spokes_[i].at;
+        const VertexShare& other = shares_[static_cast<size_t>(spokes_[i].end.idx())];
+        const double error = std::max(0.0, mine.planes(place) + other.planes(place));
+        const double length = mine.area * (mesh_.place(v) - place).squaredNorm();
+        const double irregular = valence_factor(i);
+        double cost = (error + kLengthWeight * length) * irregular;
+        // The shape can only make it dearer.
+        if ((result.edge.is_valid() && cost >= result.cost) || !features_allow(i, rules)) continue;
+        cost += kTipWeight * mine.area * squared_gap(i) * irregular;
+        if (result.edge.is_valid() && cost >= result.cost) continue;
+        const auto shape = shape_factor(i, rules);
+        if (!shape) continue;
+        cost *= *shape;
+        if (result.edge.is_valid() && cost >= result.cost) continue;
+        if (mesh_.is_collapse_ok(spokes_[i].edge)) result = {cost, spokes_[i].edge};
+    }
+    return result;
+}
+
+double CollapseCost::fan_angle(HalfedgeHandle h) {
+    gather(mesh_.from_vertex_handle(h));
+    const auto onto = std::find(outgoing_.begin(), outgoing_.end(), h);
+    return fan(static_cast<size_t>(onto - outgoing_.begin()));
+}
+
+}  // namespace gim
