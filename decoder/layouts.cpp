@@ -2,6 +2,7 @@
 
 #include "decoder/charts/read_charts.h"
 #include "decoder/squares/read_squares.h"
+#include "decoder/tiles/read_tiles.h"
 
 namespace gim {
 namespace {
@@ -12,8 +13,11 @@ constexpr LevelReader kReaders[] = {
      lay_out_square_plane, close_square_plane},
     {chart_level_info, decode_chart_mesh, decode_chart_grid, read_chart_seams, open_chart_plane, lay_out_chart_plane,
      close_chart_plane},
+    {tile_level_info, decode_tile_mesh, decode_tile_grid, read_tile_seams, open_tile_plane, lay_out_tile_plane,
+     close_tile_plane},
 };
-static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1);
+static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1 &&
+              static_cast<size_t>(FileLayout::kTiles) == 2);
 
 }  // namespace
 

@@ -107,15 +107,20 @@ class BandCoder {
                                           {}});
     }
 
-  private:
-    bool code_band(const Band& band, const BandSurroundings& around);
-    void code_block_flags(const Band& band, const BandSurroundings& around, uint32_t row);
-    bool code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end);
-    void clear_empty_blocks(uint32_t columns);
+  protected:
+    // Codes columns begin .. end-1 of a row, all in blocks that are not empty. before: the magnitudes of the triple at
+    // the left, or nullptr for zeros.
+    bool code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end,
+                  const uint32_t* before = nullptr);
 
     Coder& coder_;
     BandModels& models_;
     BandWork work_;
+
+  private:
+    bool code_band(const Band& band, const BandSurroundings& around);
+    void code_block_flags(const Band& band, const BandSurroundings& around, uint32_t row);
+    void clear_empty_blocks(uint32_t columns);
 };
 
 // ---- implementation ----
@@ -198,10 +203,9 @@ void BandCoder<Coder>::code_block_flags(const Band& band, const BandSurroundings
     }
 }
 
-// Codes columns begin .. end-1 of a row, all in blocks that are not empty.
 template <class Coder>
 bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t begin,
-                                uint32_t end) {
+                                uint32_t end, const uint32_t* before) {
     expect(around, row, begin, end, work_);
     // A decoder is copied so that its state can stay in registers. After a failure nobody uses it again.
     std::conditional_t<Coder::kWrites, Coder&, Coder> coder = coder_;
@@ -224,7 +228,8 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
         auto& signs = models.sign[std::min(k, 1u)][static_cast<size_t>(around.orientation)];
         return coder.code_bit(signs[(above * 3 + left) * 3 + of_parent], values[i] < 0) != 0;
     };
-    uint32_t left[3] = {0, 0, 0};  // magnitudes of the triple before; a run begins after an empty one
+    uint32_t left[3] = {0, 0, 0};  // magnitudes of the triple before; most runs begin after an empty one
+    if (before) std::copy_n(before, 3, left);
     for (uint32_t column = begin; column < end; ++column) {
         const size_t at = size_t{column} * 3;
         uint32_t* magnitudes = work_.magnitudes + at;  // still those of the row above

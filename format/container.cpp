@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "format/checksum.h"
+#include "format/quad_complex.h"
 #include "format/seam.h"
+#include "format/tile_atlas.h"
 
 namespace gim {
 namespace {
@@ -13,6 +15,7 @@ constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
 constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kWideOriginFlag = 0x10, kReservedFlags = 0xE0,
                   kLayoutMask = 0x03;
+constexpr uint8_t kTileExponentMask = 0x0F, kSharpWaveletFlag = 0x10, kSharpEdgesFlag = 0x20, kReservedTileFlags = 0xC0;
 
 bool parse_chunk(ByteReader* reader, Chunk* chunk) {
     uint64_t tag = 0;
@@ -101,6 +104,32 @@ Status parse_rectangle(ByteReader* reader, const ContainerLimits& limits, Header
     return Status::kOk;
 }
 
+Status parse_tiles(ByteReader* reader, const ContainerLimits& limits, Header* header) {
+    uint64_t tiles = 0, vertices = 0, rim = 0;
+    uint8_t shape = 0;
+    if (!reader->read_leb128(&tiles) || !reader->read_leb128(&vertices) || !reader->read_leb128(&rim) ||
+        !reader->read_u8(&shape))
+        return Status::kMalformed;
+    if ((shape & kReservedTileFlags) != 0) return Status::kUnsupportedVersion;
+    TileShape& t = header->tiles;
+    t.exponent = shape & kTileExponentMask;
+    t.is_sharp = shape & kSharpWaveletFlag;
+    t.has_sharp_edges = shape & kSharpEdgesFlag;
+    if (tiles == 0 || tiles > kMostTiles || vertices < 4 || vertices > 4 * tiles || rim > 2 * tiles ||
+        t.exponent < header->level_count || t.exponent > kMostTileExponent ||
+        (t.is_sharp && header->coding == Coding::kLossless))
+        return Status::kMalformed;
+    t.tiles = static_cast<uint32_t>(tiles);
+    t.vertices = static_cast<uint32_t>(vertices);
+    t.rim = static_cast<uint32_t>(rim);
+    const TileAtlas atlas(t.tiles, t.intervals(0));
+    header->sample_count = atlas.samples();  // at most 2^21 * 2^21
+    if (header->sample_count > kMostTileSamples) return Status::kMalformed;
+    if (std::max(atlas.width(), atlas.height()) > limits.max_side || header->sample_count > limits.max_samples)
+        return Status::kLimitExceeded;
+    return Status::kOk;
+}
+
 Status parse_origin(ByteReader* reader, bool is_wide, Header* header) {
     if (is_wide) {
         for (double& o : header->wide_origin.emplace()) {
@@ -146,15 +175,16 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     reader.skip(preamble.position());
     uint8_t kind = 0, bits = 0, levels = 0;
     if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels)) return Status::kMalformed;
-    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) > static_cast<uint8_t>(FileLayout::kCharts))
+    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) > static_cast<uint8_t>(FileLayout::kTiles))
         return Status::kUnsupportedVersion;
     if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels) return Status::kMalformed;
     header->layout = static_cast<FileLayout>(kind & kLayoutMask);
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
     header->bits = bits;
     header->level_count = levels;
-    const Status shape = header->layout == FileLayout::kCharts ? parse_rectangle(&reader, limits, header)
-                                                               : parse_sides(&reader, limits, file, header);
+    const Status shape = header->layout == FileLayout::kCharts  ? parse_rectangle(&reader, limits, header)
+                         : header->layout == FileLayout::kTiles ? parse_tiles(&reader, limits, header)
+                                                                : parse_sides(&reader, limits, file, header);
     if (shape != Status::kOk) return shape;
 
     if (Status s = parse_origin(&reader, kind & kWideOriginFlag, header); s != Status::kOk) return s;
@@ -197,6 +227,11 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
     if (header.layout == FileLayout::kCharts) {
         append_leb128(header.width, &rest);
         append_leb128(header.height, &rest);
+    } else if (header.layout == FileLayout::kTiles) {
+        const TileShape& t = header.tiles;
+        for (const uint32_t count : {t.tiles, t.vertices, t.rim}) append_leb128(count, &rest);
+        rest.push_back(static_cast<uint8_t>(t.exponent | (t.is_sharp ? kSharpWaveletFlag : 0) |
+                                            (t.has_sharp_edges ? kSharpEdgesFlag : 0)));
     } else {
         append_leb128(header.image_count(), &rest);
         for (const uint8_t exponent : header.side_exponents) rest.push_back(exponent);

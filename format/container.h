@@ -21,12 +21,13 @@ inline constexpr uint8_t kFormatVersion = 1;
 enum class FileLayout : uint8_t {
     kSquares = 0,  // gim: one square image per component
     kCharts = 1,   // mcgim: one image of charts (format/chart_table.h)
+    kTiles = 2,    // tiles: one complex of square tiles (format/quad_complex.h)
 };
 
 enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };
 
 enum class ChunkType : uint32_t {
-    kSeams = 0,    // SEAM, critical: the sidebands of all images, or the chart table
+    kSeams = 0,    // SEAM, critical: the sidebands of all images, or the chart table, or how tiles are glued
     kLevel = 1,    // LEVL, critical: one level of all images; coarsest first
     kText = 2,     // META, optional: UTF-8 text about the file
     kNormals = 3,  // NRML, optional: normals at a resolution of their own (format/plane_code.h)
@@ -65,6 +66,17 @@ struct Chunk {
     uint16_t crc = 0;       // of the stored payload
 };
 
+// kTiles: the complex, as far as the header tells.
+struct TileShape {
+    uint32_t tiles = 0, vertices = 0, rim = 0;  // rim: half the number of edges on boundaries
+    uint32_t exponent = 0;                      // each side of a tile has 2^exponent intervals at full resolution
+    bool is_sharp = false;                      // lossy: 5/3 in place of 9/7
+    bool has_sharp_edges = false;               // the seams tell which edges are sharp
+
+    uint32_t edges() const { return 2 * tiles + rim; }
+    uint32_t intervals(uint32_t level) const { return 1u << (exponent - level); }
+};
+
 // The units of a file's positions and details. A position is origin + step * number of units.
 struct Units {
     uint32_t bits = 12;             // of a coordinate along the largest extent of the bounding box
@@ -86,17 +98,18 @@ struct Header : Units {
     uint32_t level_count = 0;
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
+    TileShape tiles;                          // kTiles
     std::span<const uint8_t> level_psnr;      // empty, or half decibels per level, coarsest first; 0: unknown
 
     // Derived from the file.
     std::span<const uint8_t> index;
     uint32_t chunk_count = 0;
     uint32_t index_size = 0;    // bytes from the start of the file to the first chunk
-    uint64_t sample_count = 0;  // of all images, or of the rectangle
+    uint64_t sample_count = 0;  // of all images, or of the rectangle, or of the atlas of tiles
     uint64_t file_size = 0;
 
     uint32_t image_count() const {
-        return layout == FileLayout::kCharts ? 1 : static_cast<uint32_t>(side_exponents.size());
+        return layout == FileLayout::kSquares ? static_cast<uint32_t>(side_exponents.size()) : 1;
     }
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
     // Levels 0 .. level_count_of(image)-1 are stored; the coarsest of them has at least 3 samples a side.

@@ -71,6 +71,75 @@ struct DetailLanes {
     float axis[3][3][N] = {}, scale[N] = {};
 };
 
+namespace lanes {
+
+// Functions of vector i in arrays by component.
+template <size_t N>
+float squared_length(const float (&a)[3][N], size_t i) {
+    return a[0][i] * a[0][i] + a[1][i] * a[1][i] + a[2][i] * a[2][i];
+}
+template <size_t N>
+void cross(const float (&a)[3][N], const float (&b)[3][N], float (&out)[3][N], size_t i) {
+    const float x = a[1][i] * b[2][i] - a[2][i] * b[1][i];
+    const float y = a[2][i] * b[0][i] - a[0][i] * b[2][i];
+    const float z = a[0][i] * b[1][i] - a[1][i] * b[0][i];
+    out[0][i] = x;
+    out[1][i] = y;
+    out[2][i] = z;
+}
+
+template <size_t N>
+void make_scales(DetailLanes<N>& lanes, size_t count, float cell_area) {
+    auto& scale = lanes.scale;
+    std::fill_n(scale, count, 1.0f);
+    if (!(cell_area > 0)) return;
+    for (size_t i = 0; i < count; ++i) scale[i] = std::max(cell_area / lanes.area[i], 1 / kMostAreaRatio);
+    for (size_t i = 0; i < count; ++i) scale[i] = std::min(scale[i], kMostAreaRatio);
+    for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
+    for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
+}
+
+// Returns 0 for a NaN, too. Has no branches.
+inline int makes_frame(float area, float along) {
+    return (area > 0x1p-40f) & (along > 0x1p-40f) & (area < kLargestFrameUnit) & (along < kLargestFrameUnit);
+}
+template <size_t N>
+void use_plain_frame(DetailLanes<N>& lanes, size_t i) {
+    for (int a = 0; a < 3; ++a)
+        for (int k = 0; k < 3; ++k) lanes.axis[a][k][i] = k == (a + 2) % 3 ? 1.0f : 0.0f;
+    lanes.scale[i] = 1;
+}
+
+}  // namespace lanes
+
+// Makes the frames of all lanes from their tangents. cell_area: as in DetailSteps.
+template <size_t N>
+void make_frames(DetailLanes<N>& all, size_t count, float cell_area) {
+    auto& [u, v, area, along, axis, scale] = all;
+    auto& [normal, tangent, across] = axis;
+    for (size_t i = 0; i < count; ++i) {
+        lanes::cross(u, v, normal, i);
+        area[i] = lanes::squared_length(normal, i);
+        along[i] = lanes::squared_length(u, i);
+    }
+    for (size_t i = 0; i < count; ++i) area[i] = std::sqrt(area[i]);
+    for (size_t i = 0; i < count; ++i) along[i] = std::sqrt(along[i]);
+    for (size_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            normal[k][i] = normal[k][i] / area[i];
+            tangent[k][i] = u[k][i] / along[i];
+        }
+        lanes::cross(normal, tangent, across, i);
+    }
+    lanes::make_scales(all, count, cell_area);
+    int every = 1;
+    for (size_t i = 0; i < count; ++i) every &= lanes::makes_frame(area[i], along[i]);
+    if (every) return;
+    for (size_t i = 0; i < count; ++i) {
+        if (!lanes::makes_frame(area[i], along[i])) lanes::use_plain_frame(all, i);
+    }
+}
+
 // The small image that details are added to: rows * columns triples in units.
 class FrameField {
   public:
@@ -125,70 +194,11 @@ class FrameField {
 
     template <size_t N>
     void make_frames(DetailLanes<N>& lanes, size_t count) const {
-        auto& [u, v, area, along, axis, scale] = lanes;
-        auto& [normal, tangent, across] = axis;
-        for (size_t i = 0; i < count; ++i) {
-            cross(u, v, normal, i);
-            area[i] = squared_length(normal, i);
-            along[i] = squared_length(u, i);
-        }
-        for (size_t i = 0; i < count; ++i) area[i] = std::sqrt(area[i]);
-        for (size_t i = 0; i < count; ++i) along[i] = std::sqrt(along[i]);
-        for (size_t i = 0; i < count; ++i) {
-            for (int k = 0; k < 3; ++k) {
-                normal[k][i] = normal[k][i] / area[i];
-                tangent[k][i] = u[k][i] / along[i];
-            }
-            cross(normal, tangent, across, i);
-        }
-        make_scales(lanes, count);
-        int all = 1;
-        for (size_t i = 0; i < count; ++i) all &= makes_frame(area[i], along[i]);
-        if (all) return;
-        for (size_t i = 0; i < count; ++i) {
-            if (!makes_frame(area[i], along[i])) use_plain_frame(lanes, i);
-        }
+        gim::make_frames(lanes, count, cell_area_);
     }
 
   private:
     const float* row_at(uint32_t row) const { return image_ + size_t{row} * columns_ * 3; }
-
-    // Functions of vector i in arrays by component.
-    template <size_t N>
-    static float squared_length(const float (&a)[3][N], size_t i) {
-        return a[0][i] * a[0][i] + a[1][i] * a[1][i] + a[2][i] * a[2][i];
-    }
-    template <size_t N>
-    static void cross(const float (&a)[3][N], const float (&b)[3][N], float (&out)[3][N], size_t i) {
-        const float x = a[1][i] * b[2][i] - a[2][i] * b[1][i];
-        const float y = a[2][i] * b[0][i] - a[0][i] * b[2][i];
-        const float z = a[0][i] * b[1][i] - a[1][i] * b[0][i];
-        out[0][i] = x;
-        out[1][i] = y;
-        out[2][i] = z;
-    }
-
-    template <size_t N>
-    void make_scales(DetailLanes<N>& lanes, size_t count) const {
-        auto& scale = lanes.scale;
-        std::fill_n(scale, count, 1.0f);
-        if (!(cell_area_ > 0)) return;
-        for (size_t i = 0; i < count; ++i) scale[i] = std::max(cell_area_ / lanes.area[i], 1 / kMostAreaRatio);
-        for (size_t i = 0; i < count; ++i) scale[i] = std::min(scale[i], kMostAreaRatio);
-        for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
-        for (size_t i = 0; i < count; ++i) scale[i] = std::sqrt(scale[i]);
-    }
-
-    // Returns 0 for a NaN, too. Has no branches.
-    static int makes_frame(float area, float along) {
-        return (area > 0x1p-40f) & (along > 0x1p-40f) & (area < kLargestFrameUnit) & (along < kLargestFrameUnit);
-    }
-    template <size_t N>
-    static void use_plain_frame(DetailLanes<N>& lanes, size_t i) {
-        for (int a = 0; a < 3; ++a)
-            for (int k = 0; k < 3; ++k) lanes.axis[a][k][i] = k == (a + 2) % 3 ? 1.0f : 0.0f;
-        lanes.scale[i] = 1;
-    }
 
     const float* image_;
     uint32_t columns_, rows_;

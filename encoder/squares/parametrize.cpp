@@ -8,6 +8,7 @@
 
 #include "encoder/base/result.h"
 #include "encoder/surface/describe_mesh.h"
+#include "encoder/surface/face_metrics.h"
 #include "encoder/surface/progressive_mesh.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/stretch.h"
@@ -17,12 +18,10 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kBaseInterior = 60;       // interior vertices of the base mesh, if collapses allow it
-constexpr uint32_t kFewerInterior = 3;       // divides them for the next try
-constexpr double kPatientGrowth = 1.03;      // growth in these tries
-constexpr int kBaseSweeps = 200;             // enough for the base mesh to converge
-constexpr double kLeastArea = 1e-3;          // smallest weight of a face, in mean face areas
-constexpr double kLeastSqueezedArea = 1e-2;  // the same for its squeeze
+constexpr uint32_t kBaseInterior = 60;   // interior vertices of the base mesh, if collapses allow it
+constexpr uint32_t kFewerInterior = 3;   // divides them for the next try
+constexpr double kPatientGrowth = 1.03;  // growth in these tries
+constexpr int kBaseSweeps = 200;         // enough for the base mesh to converge
 
 bool tutte_map(const ProgressiveMesh& mesh, std::vector<Vec2>& uv) {
     std::vector<uint8_t> fixed(uv.size(), 1);
@@ -49,19 +48,16 @@ class Optimiser {
     Optimiser(ProgressiveMesh& mesh, const std::vector<Vec3>& positions, const ParametrizeOptions& options,
               double surface, std::vector<Vec2>& uv)
         : mesh_(mesh),
-          positions_(positions),
-          importance_(options.importance),
+          metrics_(positions, options.importance, surface, 1, options.squeeze),
           uv_(uv),
-          metric_(mesh.half_edge_count() / 3),
-          squeeze_(options.squeeze * surface * surface / 8) {
-        double area = 0;
+          metric_(mesh.half_edge_count() / 3) {
+        std::vector<Triangle> faces;
         for (uint32_t f = 0; f < metric_.size(); ++f) {
-            if (mesh_.alive(f)) area += 2 * metric_of(f, 0).weight;
+            if (mesh_.alive(f)) faces.push_back(corners_of(f));
         }
-        least_area_ = kLeastArea * area / static_cast<double>(metric_.size());
-        least_squeezed_area_ = kLeastSqueezedArea * surface / static_cast<double>(metric_.size());
+        metrics_.set_least_area(faces, metric_.size());
         for (uint32_t f = 0; f < metric_.size(); ++f) {
-            if (mesh_.alive(f)) metric_[f] = metric_of(f, least_area_);
+            if (mesh_.alive(f)) metric_[f] = metrics_.of(corners_of(f));
         }
     }
 
@@ -88,7 +84,7 @@ class Optimiser {
     // faces upright.
     bool insert(const VertexSplit& split) {
         mesh_.for_each_outgoing(split.vertex,
-                                [&](uint32_t h) { metric_[face_of(h)] = metric_of(face_of(h), least_area_); });
+                                [&](uint32_t h) { metric_[face_of(h)] = metrics_.of(corners_of(face_of(h))); });
         load_star(split.vertex);
         Vec2 x = Vec2::Zero();
         for (const StarTriangle& t : star_) x += t.p1;
@@ -107,12 +103,8 @@ class Optimiser {
     }
 
   private:
-    FaceMetric metric_of(uint32_t f, double least_area) const {
-        const uint32_t a = mesh_.origin(3 * f), b = mesh_.origin(3 * f + 1), c = mesh_.origin(3 * f + 2);
-        FaceMetric metric = face_metric(positions_[a], positions_[b], positions_[c], least_area);
-        metric.squeeze = squeeze_ / std::max(2 * metric.weight, least_squeezed_area_);
-        if (!importance_.empty()) metric.weight *= (importance_[a] + importance_[b] + importance_[c]) / 3;
-        return metric;
+    Triangle corners_of(uint32_t f) const {
+        return {mesh_.origin(3 * f), mesh_.origin(3 * f + 1), mesh_.origin(3 * f + 2)};
     }
     void load_star(uint32_t v) {
         star_.clear();
@@ -134,13 +126,10 @@ class Optimiser {
     }
 
     ProgressiveMesh& mesh_;
-    const std::vector<Vec3>& positions_;
-    const std::vector<double>& importance_;
+    FaceMetrics metrics_;
     std::vector<Vec2>& uv_;
     std::vector<FaceMetric> metric_;
     std::vector<StarTriangle> star_;
-    double squeeze_ = 0;  // weight of N is this over the face's area
-    double least_area_ = 0, least_squeezed_area_ = 0;
 };
 
 Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {

@@ -7,14 +7,9 @@
 #include "encoder/base/result.h"
 #include "encoder/squares/boundary_map.h"
 #include "encoder/squares/square_image.h"
+#include "encoder/surface/surface_point.h"
 
 namespace gim {
-
-// The place of a sample on the opened mesh: a triangle and the barycentric coordinates in it.
-struct SurfacePoint {
-    uint32_t triangle = kNone;
-    std::array<double, 3> barycentric{};
-};
 
 // Finds the triangle of uv under every grid point of a side x side image, row-major. O(F + side^2).
 std::vector<SurfacePoint> locate_samples(const Mesh& mesh, const std::vector<Vec2>& uv, uint32_t side);

@@ -92,6 +92,14 @@ Vec2 descent_direction(const StarEnergy& e) {
     return Vec2(-(c * e.gradient.x() - xy * e.gradient.y()) / det, -(a * e.gradient.y() - xy * e.gradient.x()) / det);
 }
 
+// Returns the Newton direction along one axis.
+Vec2 descent_along(const StarEnergy& e, int axis) {
+    const double curvature = e.hessian(axis, axis);
+    Vec2 direction = Vec2::Zero();
+    direction[axis] = curvature > 0 ? -e.gradient[axis] / curvature : -e.gradient[axis];
+    return direction;
+}
+
 // Returns the longest step along `direction` that keeps every triangle counter-clockwise.
 double longest_step(const std::vector<StarTriangle>& star, const Vec2& x, const Vec2& direction) {
     double longest = std::numeric_limits<double>::infinity();
@@ -107,16 +115,23 @@ double longest_step(const std::vector<StarTriangle>& star, const Vec2& x, const 
 }  // namespace
 
 double minimise_star(const std::vector<StarTriangle>& star, Vec2& x, int steps) {
+    return descend_star(star, x, steps, kAnyDirection).after;
+}
+
+StarDescent descend_star(const std::vector<StarTriangle>& star, Vec2& x, int steps, int axis) {
     StarEnergy here = star_energy(star, x);
+    const double start = here.value;
     for (int i = 0; i < steps && std::isfinite(here.value); ++i) {
-        const Vec2 direction = descent_direction(here);
+        const Vec2 direction = axis == kAnyDirection ? descent_direction(here) : descent_along(here, axis);
         const double slope = direction.dot(here.gradient);
         if (!(slope < 0)) break;
         double step = std::min(1.0, 0.8 * longest_step(star, x, direction));
         bool moved = false;
+        double reached = 0;
         for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
             const Vec2 trial = x + step * direction;
-            if (star_value(star, trial) < here.value + 1e-4 * step * slope) {
+            reached = star_value(star, trial);
+            if (reached < here.value + 1e-4 * step * slope) {
                 x = trial;
                 moved = true;
                 break;
@@ -124,11 +139,11 @@ double minimise_star(const std::vector<StarTriangle>& star, Vec2& x, int steps) 
         }
         if (!moved) break;
         const double before = here.value;
-        if (i + 1 == steps) return star_value(star, x);
+        if (i + 1 == steps) return {start, reached};
         here = star_energy(star, x);
         if (before - here.value < 1e-6 * before) break;
     }
-    return here.value;
+    return {start, here.value};
 }
 
 bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x) {

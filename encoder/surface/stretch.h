@@ -51,6 +51,13 @@ struct StarTriangle {
 // `x` must start inside the kernel. Returns the energy reached. O(star * steps).
 double minimise_star(const std::vector<StarTriangle>& star, Vec2& x, int steps);
 
+// The same along one axis (0: x, 1: y) or in any direction. Returns the energies at both ends.
+inline constexpr int kAnyDirection = -1;
+struct StarDescent {
+    double before = 0, after = 0;
+};
+StarDescent descend_star(const std::vector<StarTriangle>& star, Vec2& x, int steps, int axis);
+
 // Finds a point well inside the kernel of the star, from which every triangle is counter-clockwise. Returns false if
 // there is none.
 bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x);

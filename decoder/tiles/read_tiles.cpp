@@ -1,0 +1,157 @@
+#include "decoder/tiles/read_tiles.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "decoder/tiles/tile_decoder.h"
+#include "decoder/tiles/tile_surface.h"
+
+namespace gim {
+namespace {
+
+struct Workspace {
+    TileWorkspace tiles;
+    TriangulateTilesWork triangulate;
+
+    void lay_out(const TileShape& shape, uint32_t level, Arena* arena) {
+        const size_t width = size_t{shape.intervals(level)} + 1;
+        tiles = lay_out_tiles(shape, level, arena);
+        triangulate = {arena->take<float>(6 * width), arena->take<uint32_t>(width), arena->take<uint32_t>(2 * width)};
+    }
+};
+
+uint64_t scratch_size(const TileShape& shape, uint32_t level) {
+    Workspace ws;
+    Arena arena(nullptr);
+    ws.lay_out(shape, level, &arena);
+    return arena.used();
+}
+
+// Calls f(surface, workspace, spare) with the decoded level. spare: room for a triple per vertex.
+template <class F>
+Status with_surface(const LevelRequest& request, const Memory& scratch, const F& f) {
+    const TileShape& shape = request.header.tiles;
+    if (request.level >= request.header.level_count) return Status::kNoSuchLevel;
+    if (Status s = check_scratch(scratch, scratch_size(shape, request.level)); s != Status::kOk) return s;
+    Workspace ws;
+    Arena arena(scratch.bytes);
+    ws.lay_out(shape, request.level, &arena);
+    float* samples = nullptr;
+    if (Status s = decode_tiles(request.header, request.file, request.level, ws.tiles, &samples); s != Status::kOk)
+        return s;
+    f(TileSurface{ws.tiles.complex, shape.intervals(request.level), samples}, ws,
+      static_cast<float*>(ws.tiles.samples[1]));
+    return Status::kOk;
+}
+
+// Texture coordinates of samples of the atlas at full resolution.
+class AtlasTexcoords {
+  public:
+    AtlasTexcoords(const TileShape& shape, uint32_t level) : atlas_(shape.tiles, shape.intervals(0)), level_(level) {}
+    void set(uint32_t tile, uint32_t row, uint32_t column, float* uv) const {
+        uv[0] = static_cast<float>(atlas_.column(tile) + (column << level_)) / static_cast<float>(atlas_.width() - 1);
+        uv[1] = static_cast<float>(atlas_.row(tile) + (row << level_)) / static_cast<float>(atlas_.height() - 1);
+    }
+
+  private:
+    TileAtlas atlas_;
+    uint32_t level_;
+};
+
+}  // namespace
+
+Status tile_level_info(const LevelRequest& request, gim_level_info* info) {
+    const Header& header = request.header;
+    const TileShape& shape = header.tiles;
+    if (request.level >= header.level_count) return Status::kNoSuchLevel;
+    std::span<const uint8_t> seams;
+    if (Status s = read_seam_payload(header, request.file, &seams); s != Status::kOk) return s;
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (Status s = find_level_chunk(header, request.level, &chunk, &offset); s != Status::kOk) return s;
+    const uint32_t side = shape.intervals(request.level);
+    const TileAtlas atlas(shape.tiles, side);
+    *info = {};
+    info->width = atlas.width();
+    info->height = atlas.height();
+    info->coarsest_level = header.level_count - 1;
+    info->vertex_count = shape.vertices + shape.edges() * (side - 1) + shape.tiles * (side - 1) * (side - 1);
+    info->triangle_count = 2 * shape.tiles * side * side;
+    info->prefix_size = offset + chunk.size;
+    info->scratch_size = scratch_size(shape, request.level);
+    return Status::kOk;
+}
+
+Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
+    const Header& header = request.header;
+    const AtlasTexcoords texcoords(header.tiles, request.level);
+    return with_surface(request, scratch, [&](const TileSurface& surface, const Workspace& ws, float*) {
+        const uint32_t width = surface.side + 1;
+        for_each_run(surface, [&](uint32_t vertex, uint32_t tile, uint32_t first, uint32_t count, int32_t stride) {
+            const float* samples = surface.samples + 3 * (tile * surface.tile_size() + first);
+            float* positions = out.positions + 3 * size_t{vertex};
+            if (stride == 1) {
+                to_object(header.origin, header.step, samples, positions, count);
+            } else {
+                for (uint32_t i = 0; i < count; ++i)
+                    to_object(header.origin, header.step, samples + ptrdiff_t{3} * stride * i, positions + 3 * i);
+            }
+            if (!out.texcoords) return;
+            for (uint32_t i = 0; i < count; ++i) {
+                const uint32_t at = first + static_cast<uint32_t>(stride) * i;
+                texcoords.set(tile, at / width, at % width, out.texcoords + 2 * (size_t{vertex} + i));
+            }
+        });
+        if (out.normals) tile_normals(surface, ws.triangulate.numbers, out.normals);
+        if (out.triangles)
+            triangulate_tiles(surface, ws.triangulate, MeshNumbers{surface.numbers(), surface.side}, out.triangles);
+    });
+}
+
+Status decode_tile_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
+    const Header& header = request.header;
+    const AtlasTexcoords texcoords(header.tiles, request.level);
+    const TileAtlas atlas(header.tiles.tiles,
+                          request.level < header.level_count ? header.tiles.intervals(request.level) : 1);
+    return with_surface(request, scratch, [&](const TileSurface& surface, const Workspace& ws, float* spare) {
+        const uint32_t width = surface.side + 1;
+        const auto count = static_cast<size_t>(atlas.samples());
+        std::fill_n(out.positions, 3 * count, std::numeric_limits<float>::quiet_NaN());
+        if (out.normals) std::fill_n(out.normals, 3 * count, 0.0f);
+        if (out.texcoords) std::fill_n(out.texcoords, 2 * count, 0.0f);
+        if (out.normals) tile_normals(surface, ws.triangulate.numbers, spare);
+        const MeshNumbers vertices = {surface.numbers(), surface.side};
+        for (uint32_t t = 0; t < surface.complex.tiles; ++t) {
+            for (uint32_t row = 0; row < width; ++row) {
+                const float* samples = surface.samples + 3 * (t * surface.tile_size() + row * width);
+                const size_t to = size_t{atlas.row(t) + row} * atlas.width() + atlas.column(t);
+                to_object(header.origin, header.step, samples, out.positions + 3 * to, width);
+                if (out.normals) {
+                    uint32_t* numbers = ws.triangulate.numbers;
+                    vertices.load(t, row, numbers);
+                    for (size_t c = 0; c < width; ++c)
+                        std::copy_n(spare + 3 * size_t{numbers[c]}, 3, out.normals + 3 * (to + c));
+                }
+                if (out.texcoords) {
+                    for (uint32_t c = 0; c < width; ++c) texcoords.set(t, row, c, out.texcoords + 2 * (to + c));
+                }
+            }
+        }
+        if (out.triangles) triangulate_tiles(surface, ws.triangulate, GridNumbers{atlas, surface.side}, out.triangles);
+    });
+}
+
+Status read_tile_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count) {
+    if (class_of) return Status::kBadArgument;
+    if (request.level >= request.header.level_count) return Status::kNoSuchLevel;
+    std::span<const uint8_t> seams;
+    if (Status s = read_seam_payload(request.header, request.file, &seams); s != Status::kOk) return s;
+    if (path_count) *path_count = request.header.tiles.edges();
+    return Status::kOk;
+}
+
+Status open_tile_plane(const LevelRequest&, const Chunk&, uint64_t, PlaneLevel*) { return Status::kUnsupportedVersion; }
+PlaneWorkspace lay_out_tile_plane(const PlaneLevel&, Arena*) { return {}; }
+void close_tile_plane(const PlaneLevel&, const PlaneWorkspace&, float*) {}
+
+}  // namespace gim

@@ -1,0 +1,18 @@
+// The calls of the C interface for tiles, as layout/level_reader.h describes them.
+#pragma once
+
+#include "decoder/layout/level_reader.h"
+
+namespace gim {
+
+Status tile_level_info(const LevelRequest& request, gim_level_info* info);
+Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+Status decode_tile_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
+Status read_tile_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
+
+// Planes of tiles are for later versions.
+Status open_tile_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
+PlaneWorkspace lay_out_tile_plane(const PlaneLevel& plane, Arena* arena);
+void close_tile_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+
+}  // namespace gim

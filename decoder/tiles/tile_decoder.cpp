@@ -1,0 +1,166 @@
+#include "decoder/tiles/tile_decoder.h"
+
+#include <algorithm>
+#include <new>
+#include <type_traits>
+
+#include "decoder/pyramid/pyramid_decoder.h"
+#include "decoder/pyramid/range_decoder.h"
+#include "decoder/tiles/tile_details.h"
+#include "format/tile_base.h"
+#include "format/tile_lifting.h"
+#include "format/tile_norms.h"
+#include "format/tile_seams.h"
+
+namespace gim {
+namespace {
+
+// Lets the decoder take part in traversals that ask a writer for the complex.
+struct NoSource {};
+
+void scale(float* values, size_t count, float factor) {
+    for (size_t i = 0; i < count; ++i) values[i] = values[i] * factor;
+}
+
+// Decodes from the base up to the level asked for, stream by stream.
+template <class Wavelet>
+class TileDecoder {
+  public:
+    using Sample = typename Wavelet::Sample;
+
+    TileDecoder(const Header& header, uint32_t level, TileWorkspace& ws)
+        : header_(header), coding_(detail_coding_of(header)), steps_(header.tiles.exponent), level_(level), ws_(ws) {}
+
+    // Decodes the stream of a level. The coarsest level comes first.
+    bool decode(RangeDecoder& coder, uint32_t to_level) {
+        if (done_ == 0 && !decode_base(coder)) return false;
+        while (done_ < steps_ - to_level) {
+            if (!decode_step(coder, ++done_)) return false;
+        }
+        return true;
+    }
+
+  private:
+    // Those of the level asked for are in slot 0.
+    uint32_t slot(uint32_t step) const { return (steps_ - level_ - step) & 1; }
+    Sample* samples(uint32_t step) const { return static_cast<Sample*>(ws_.samples[slot(step)]); }
+    static size_t samples_after(uint32_t step) { return TilePlanes(1u << step).size(); }
+
+    bool decode_base(RangeDecoder& coder) {
+        const QuadComplex& complex = ws_.complex;
+        BaseCoder<RangeDecoder> base_coder(&coder, ws_.models);
+        if (!base_coder.code(complex, ws_.base)) return false;
+        const int32_t middle = 1 << (header_.bits - 1);
+        const float step = tile_base_step(header_.tiles, coding_.quantizer);
+        const TilePlanes planes(1);
+        for (uint32_t h = 0; h < complex.half_edges(); ++h) {
+            Sample* to = samples(0) + tile_of(h) * planes.size() + planes.sides[side_of(h)].low.at(0);
+            const int32_t* value = ws_.base + 3 * size_t{complex.vertex[h]};
+            for (size_t k = 0; k < 3; ++k) {
+                if constexpr (std::is_integral_v<Sample>)
+                    to[k] = static_cast<int32_t>(static_cast<uint32_t>(value[k]) + static_cast<uint32_t>(middle));
+                else
+                    to[k] = static_cast<float>(value[k]) * step + static_cast<float>(middle);
+            }
+        }
+        return true;
+    }
+
+    // From the small images in the planes of this step to those of the next, or to the level asked for.
+    bool decode_step(RangeDecoder& coder, uint32_t step) {
+        const QuadComplex& complex = ws_.complex;
+        const TilePlanes planes(1u << (step - 1));
+        int32_t* details = ws_.details[slot(step)];
+        std::fill_n(details, complex.tiles * planes.details(), 0);
+        TileCoder<RangeDecoder> tile_coder(&coder, ws_.models, ws_.band_work);
+        if (!tile_coder.code_step(complex, planes, details, step > 1 ? ws_.details[slot(step - 1)] : nullptr,
+                                  ws_.flags))
+            return false;
+        Sample* from = samples(step - 1);
+        const DetailSteps detail_steps = tile_steps_at(header_.tiles, coding_, steps_ - step + 1);
+        load_tile_details(complex, planes, details, detail_steps, from);
+        if constexpr (!std::is_integral_v<Sample>) {
+            if (Wavelet::kLowGain != 1) {
+                for (uint32_t t = 0; t < complex.tiles; ++t)
+                    scale(from + t * planes.size(), static_cast<size_t>(planes.horizontal()), Wavelet::kLowGain);
+            }
+        }
+        TileLifting<Wavelet>(complex, planes, from, static_cast<typename Wavelet::Sum*>(ws_.sums)).synthesize();
+        const bool is_last = step == steps_ - level_;
+        const size_t stride = is_last ? planes.size() : samples_after(step);
+        for (uint32_t t = 0; t < complex.tiles; ++t)
+            join_planes(planes, from + t * planes.size(), samples(step) + t * stride);
+        return true;
+    }
+
+    const Header& header_;
+    DetailCoding coding_;
+    uint32_t steps_, level_;
+    TileWorkspace& ws_;
+    uint32_t done_ = 0;
+};
+
+template <class Wavelet>
+Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
+                   float** samples) {
+    new (ws.models) BandModels(coefficient_kind_of(header));
+    TileDecoder<Wavelet> decoder(header, level, ws);
+    for (uint32_t l = header.level_count; l-- > level;) {
+        Chunk chunk;
+        uint64_t offset = 0;
+        std::span<const uint8_t> payload;
+        if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
+        if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
+        RangeDecoder coder(payload);
+        if (!decoder.decode(coder, l) || !coder.intact()) return Status::kMalformed;
+    }
+    const size_t side = header.tiles.intervals(level) + 1;
+    *samples = to_units<typename Wavelet::Sample>(ws.samples[0], ws.complex.tiles * side * side * 3);
+    return Status::kOk;
+}
+
+}  // namespace
+
+TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena) {
+    const size_t half_edges = size_t{4} * shape.tiles;
+    const uint32_t h = shape.intervals(level) / 2;
+    const TilePlanes planes(h), before(h / 2);  // `before` is empty where h is 1
+    TileWorkspace ws;
+    QuadComplex& c = ws.complex;
+    for (uint32_t** array : {&c.mate, &c.vertex, &c.edge, &c.lower, &c.valence, &ws.quad_code.next,
+                             &ws.quad_code.previous, &ws.quad_code.fan})
+        *array = arena->take<uint32_t>(half_edges);
+    c.on_boundary = arena->take<uint8_t>(half_edges);
+    ws.models = arena->take<BandModels>(1);
+    ws.band_work = BandWork(arena->take<uint32_t>(BandWork::size(2 * h + 1)), 2 * h + 1);
+    ws.flags = arena->take<TileFlags>(shape.tiles);
+    ws.base = arena->take<int32_t>(size_t{3} * shape.vertices);
+    ws.sums = arena->take<int64_t>(size_t{6} * shape.vertices);
+    ws.details[0] = arena->take<int32_t>(shape.tiles * planes.details());
+    ws.details[1] = arena->take<int32_t>(shape.tiles * before.details());
+    // A step begins with the planes that it ends with.
+    ws.samples[0] = arena->take<float>(shape.tiles * planes.size());
+    ws.samples[1] = arena->take<float>(shape.tiles * planes.size());
+    return ws;
+}
+
+Status read_complex(const Header& header, std::span<const uint8_t> file, TileWorkspace& ws) {
+    std::span<const uint8_t> payload;
+    if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
+    RangeDecoder coder(payload);
+    ws.complex.tiles = header.tiles.tiles;
+    NoSource source;
+    if (!code_tile_seams(coder, source, header.tiles, ws.quad_code, &ws.complex)) return Status::kMalformed;
+    const bool as_told = ws.complex.vertices == header.tiles.vertices && ws.complex.edges == header.tiles.edges();
+    return as_told && coder.intact() ? Status::kOk : Status::kMalformed;
+}
+
+Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
+                    float** samples) {
+    if (Status s = read_complex(header, file, ws); s != Status::kOk) return s;
+    if (header.coding == Coding::kLossless) return decode_with<Tiles53>(header, file, level, ws, samples);
+    return header.tiles.is_sharp ? decode_with<TilesSharp>(header, file, level, ws, samples)
+                                 : decode_with<Tiles97>(header, file, level, ws, samples);
+}
+
+}  // namespace gim

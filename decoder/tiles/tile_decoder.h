@@ -1,0 +1,37 @@
+// The samples of one level of a complex of tiles: streams -> details -> inverse wavelet -> units.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "decoder/pyramid/arena.h"
+#include "format/container.h"
+#include "format/expectation.h"
+#include "format/quad_code.h"
+#include "format/quad_complex.h"
+#include "format/tile_code.h"
+
+namespace gim {
+
+struct TileWorkspace {
+    QuadComplex complex;
+    QuadCodeWork quad_code;
+    BandModels* models = nullptr;
+    BandWork band_work;
+    TileFlags* flags = nullptr;  // per tile
+    int32_t* base = nullptr;     // triples, per vertex
+    void* sums = nullptr;        // 6 per vertex, of a TileLifting
+    int32_t* details[2] = {};    // of the step being decoded and of the one before, in turn
+    void* samples[2] = {};       // int32_t or float, in turn; the level asked for ends in the first
+};
+
+TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena);
+
+// Reads and checks how the tiles are glued. Fills ws.complex.
+Status read_complex(const Header& header, std::span<const uint8_t> file, TileWorkspace& ws);
+
+// Decodes a level: per tile (side+1)^2 triples in units, row by row. Samples of one surface point have equal bits.
+Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
+                    float** samples);
+
+}  // namespace gim
