@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <unordered_map>
 
 #include "encoder/surface/stretch.h"
+#include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/tile_walk.h"
 
 namespace gim {
@@ -63,16 +65,31 @@ class Locator {
 
 }  // namespace
 
-Result<std::vector<SurfacePoint>> locate_samples(const TileMap& map, TileComplex& complex, uint32_t side) {
-    const QuadComplex view = complex.view();
+NumberedQuads number_quads(const std::vector<Quad>& quads) {
+    NumberedQuads result{quads, {}};
+    std::unordered_map<uint32_t, uint32_t> number;
+    for (Quad& quad : result.quads) {
+        for (uint32_t& v : quad) {
+            const auto [known, fresh] = number.try_emplace(v, static_cast<uint32_t>(result.vertices.size()));
+            if (fresh) result.vertices.push_back(v);
+            v = known->second;
+        }
+    }
+    return result;
+}
+
+Result<std::vector<SurfacePoint>> locate_samples(const TileMap& map, uint32_t side) {
+    const auto [quads, vertices] = number_quads(map.quads);
+    GIM_TRY(complex, complex_of(quads, static_cast<uint32_t>(vertices.size())));
+    const QuadComplex& view = complex.view();
     const TileSamples samples(view, side);
-    const TileWalker walker(complex.mates());
+    const TileWalker walker({view.mate, view.mate + view.half_edges()});
     Locator locator(walker, samples, side);
     for (uint32_t f = 0; f < map.placed.size(); ++f) locator.convert(f, map.placed[f]);
 
     std::vector<SurfacePoint>& found = locator.found();
     std::vector<uint32_t> corner_of(map.places.size(), kNone);
-    for (uint32_t v = 0; v < complex.vertices().size(); ++v) corner_of[complex.vertices()[v]] = v;
+    for (uint32_t v = 0; v < vertices.size(); ++v) corner_of[vertices[v]] = v;
     for (uint32_t f = 0; f < map.triangles.size(); ++f) {
         for (size_t i = 0; i < 3; ++i) {
             const uint32_t corner = corner_of[map.triangles[f][i]];

@@ -7,13 +7,19 @@
 
 #include "encoder/base/result.h"
 #include "encoder/surface/surface_point.h"
-#include "encoder/tiles/tile_complex.h"
 #include "encoder/tiles/tile_map.h"
 
 namespace gim {
 
 // Returns a point of map.triangles for each sample, numbered as TileSamples does, at `side` intervals along each edge.
 // Samples at the corners of tiles are vertices. Those on creases and boundaries lie on edges. O(F + samples).
-Result<std::vector<SurfacePoint>> locate_samples(const TileMap& map, TileComplex& complex, uint32_t side);
+Result<std::vector<SurfacePoint>> locate_samples(const TileMap& map, uint32_t side);
+
+// The quads with their vertices numbered by first appearance, as complexes number them.
+struct NumberedQuads {
+    std::vector<Quad> quads;
+    std::vector<uint32_t> vertices;  // per number: the vertex
+};
+NumberedQuads number_quads(const std::vector<Quad>& quads);
 
 }  // namespace gim

@@ -1,27 +1,16 @@
 #include "encoder/tiles/sample_tiles.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "encoder/tiles/code_complex.h"
+#include "format/tile_atlas.h"
 
 namespace gim {
 
 namespace {
 
-// Calls visit(texel of the atlas, sample) for every sample of every tile.
-template <class Visit>
-void for_each_texel(const QuadComplex& complex, const TileAtlas& atlas, const Visit& visit) {
-    const TileSamples samples(complex, atlas.side);
-    for (uint32_t tile = 0; tile < complex.tiles; ++tile) {
-        for (uint32_t row = 0; row <= atlas.side; ++row) {
-            for (uint32_t column = 0; column <= atlas.side; ++column)
-                visit(atlas.at(tile, row, column), samples.at(tile, row, column));
-        }
-    }
-}
-
 // Per sample: whether it lies on a boundary of the complex.
-std::vector<bool> boundary_samples(const QuadComplex& complex, uint32_t side) {
-    const TileSamples samples(complex, side);
+std::vector<bool> boundary_samples(const QuadComplex& complex, const TileSamples& samples, uint32_t side) {
     std::vector<bool> boundary(samples.count(), false);
     for (uint32_t h = 0; h < complex.half_edges(); ++h) {
         if (complex.mate[h] != kNoMate) continue;
@@ -30,58 +19,72 @@ std::vector<bool> boundary_samples(const QuadComplex& complex, uint32_t side) {
     return boundary;
 }
 
-}  // namespace
-
-// Takes the fewest empty slots among rectangles up to three times as long as wide, then the squarest.
-TileAtlas make_atlas(uint32_t tiles, uint32_t side) {
-    const auto root = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
-    TileAtlas best{root, (tiles + root - 1) / root, side};
-    for (uint32_t rows = root; rows > 0; --rows) {
-        const uint32_t columns = (tiles + rows - 1) / rows;
-        if (columns > 3 * rows) break;
-        if (columns * rows < best.columns * best.rows) best = {columns, rows, side};
+std::vector<uint32_t> texels(const QuadComplex& complex, uint32_t side) {
+    const TileSamples samples(complex, side);
+    const TileAtlas atlas(complex.tiles, side);
+    std::vector<uint32_t> sample(atlas.samples(), kNone);
+    for (uint32_t tile = 0; tile < complex.tiles; ++tile) {
+        for (uint32_t row = 0; row <= side; ++row) {
+            for (uint32_t column = 0; column <= side; ++column)
+                sample[size_t{atlas.row(tile) + row} * atlas.width() + atlas.column(tile) + column] =
+                    samples.at(tile, row, column);
+        }
     }
-    return best;
+    return sample;
 }
 
-GridGluing glue_tiles(TileComplex& complex, const TileAtlas& atlas) {
-    const QuadComplex view = complex.view();
+GridGluing glue(const QuadComplex& complex, const std::vector<uint32_t>& sample_at, uint32_t side) {
+    const TileSamples samples(complex, side);
+    const TileAtlas atlas(complex.tiles, side);
+    const std::vector<bool> boundary = boundary_samples(complex, samples, side);
     GluedSamples glued;
     glued.width = atlas.width();
     glued.height = atlas.height();
-    glued.defined.assign(size_t{glued.width} * glued.height, 0);
-    glued.on_input_boundary.assign(glued.defined.size(), false);
-    glued.classes.resize(TileSamples(view, atlas.side).count());
-    glued.kind.assign(size_t{glued.width - 1} * (glued.height - 1), CellKind::kEmpty);
-    const std::vector<bool> boundary = boundary_samples(view, atlas.side);
-    for_each_texel(view, atlas, [&](uint32_t texel, uint32_t sample) {
+    glued.defined.resize(sample_at.size());
+    glued.on_input_boundary.resize(sample_at.size());
+    glued.classes.resize(samples.count());
+    for (uint32_t texel = 0; texel < sample_at.size(); ++texel) {
+        if (sample_at[texel] == kNone) continue;
         glued.defined[texel] = 1;
-        glued.on_input_boundary[texel] = boundary[sample];
-        glued.classes[sample].push_back(texel);
-    });
-    for (uint32_t tile = 0; tile < view.tiles; ++tile) {
-        for (uint32_t row = 0; row < atlas.side; ++row) {
-            const uint32_t first = atlas.at(tile, row, 0);
-            const auto cell = glued.kind.begin() + (first - first / glued.width);
-            std::fill_n(cell, atlas.side, CellKind::kShorter);
+        glued.on_input_boundary[texel] = boundary[sample_at[texel]];
+        glued.classes[sample_at[texel]].push_back(texel);
+    }
+    glued.kind.assign(size_t{glued.width - 1} * (glued.height - 1), CellKind::kEmpty);
+    for (uint32_t tile = 0; tile < complex.tiles; ++tile) {
+        for (uint32_t row = 0; row < side; ++row) {
+            const size_t first = size_t{atlas.row(tile) + row} * (glued.width - 1) + atlas.column(tile);
+            std::fill_n(glued.kind.begin() + static_cast<std::ptrdiff_t>(first), side, CellKind::kShorter);
         }
     }
     return make_gluing(std::move(glued));
 }
 
-GeometryImage sample_tiles(const std::vector<Vec3>& positions, const TileMap& map, TileComplex& complex,
-                           const std::vector<SurfacePoint>& points, uint32_t side) {
-    const TileAtlas atlas = make_atlas(static_cast<uint32_t>(map.quads.size()), side);
-    GeometryImage image;
-    image.gluing = glue_tiles(complex, atlas);
-    image.positions.assign(image.gluing.sample_count(), Vec3::Zero());
-    std::vector<Vec3> at(points.size(), Vec3::Zero());
-    for (size_t i = 0; i < points.size(); ++i) {
-        const Triangle& t = map.triangles[points[i].triangle];
-        for (size_t k = 0; k < 3; ++k) at[i] += points[i].barycentric[k] * positions[t[k]];
+}  // namespace
+
+TileImage sample_tiles(const std::vector<Vec3>& positions, const TileMap& map, const std::vector<SurfacePoint>& points,
+                       uint32_t exponent) {
+    NumberedQuads numbered = number_quads(map.quads);
+    TileImage image;
+    image.quads = std::move(numbered.quads);
+    image.vertices = static_cast<uint32_t>(numbered.vertices.size());
+    image.exponent = exponent;
+    for (const SurfacePoint& point : points) {
+        const Triangle& t = map.triangles[point.triangle];
+        Vec3 p = Vec3::Zero();
+        for (size_t k = 0; k < 3; ++k) p += point.barycentric[k] * positions[t[k]];
+        image.positions.push_back(p);
     }
-    for_each_texel(complex.view(), atlas,
-                   [&](uint32_t texel, uint32_t sample) { image.positions[texel] = at[sample]; });
+    return image;
+}
+
+Result<GeometryImage> atlas_of(const TileImage& tiles) {
+    GIM_TRY(complex, complex_of(tiles.quads, tiles.vertices));
+    const uint32_t side = 1u << tiles.exponent;
+    const std::vector<uint32_t> sample_at = texels(complex.view(), side);
+    GeometryImage image;
+    image.gluing = glue(complex.view(), sample_at, side);
+    for (const uint32_t sample : sample_at)
+        image.positions.push_back(sample == kNone ? Vec3(Vec3::Zero()) : tiles.positions[sample]);
     return image;
 }
 

@@ -7,9 +7,10 @@
 
 #include "encoder/surface/face_metrics.h"
 #include "encoder/surface/refine.h"
+#include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/flat_mesh.h"
+#include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/start_map.h"
-#include "encoder/tiles/tile_complex.h"
 #include "encoder/tiles/tile_walk.h"
 
 namespace gim {
@@ -250,8 +251,9 @@ TileMap read_map(const FlatMesh& mesh, const Mesh& dense, const TileWalker& walk
 Result<TileMap> map_tiles(const Mesh& dense, const BaseMesh& base, const std::vector<Quad>& quads,
                           const TileMapOptions& options, const Progress& progress) {
     const auto vertex_count = static_cast<uint32_t>(dense.positions.size());
-    GIM_TRY(complex, TileComplex::make(quads));
-    const TileWalker walker(complex.mates());
+    const NumberedQuads numbered = number_quads(quads);
+    GIM_TRY(complex, complex_of(numbered.quads, static_cast<uint32_t>(numbered.vertices.size())));
+    const TileWalker walker({complex.view().mate, complex.view().mate + complex.view().half_edges()});
     GIM_TRY(start, start_map(base.triangles, quads, vertex_count));
     FlatMesh mesh(base.triangles, start, vertex_count, walker);
     std::vector<Freedom> freedom(vertex_count, Freedom::kFree);
