@@ -5,26 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "corpus/generators.h"
 #include "encoder/surface/clean.h"
+#include "tests/random_numbers.h"
 
 namespace gim {
 namespace {
 
 using corpus::Point;
-using Random = std::mt19937_64;
 
-double between(Random& random, double least, double most) {
-    return least + (most - least) * (static_cast<double>(random() >> 11) * 0x1p-53);
-}
-uint32_t number_between(Random& random, uint32_t least, uint32_t most) {
-    return least + static_cast<uint32_t>(random() % (most - least + 1));
-}
 uint32_t any_of(Random& random, size_t count) { return number_between(random, 0, static_cast<uint32_t>(count) - 1); }
 
 bool has_three_corners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
