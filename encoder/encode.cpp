@@ -99,7 +99,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     if (options.layout == Layout::kAuto) return encode_as_any(prepared, options, clock, local_observer);
     const LayoutEntry* layout = find_layout(options.layout);
     if (layout == nullptr)
-        return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim or auto"};
+        return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim, tiles or auto"};
     return encode_as(*layout, prepared, options, clock, local_observer);
 }
 
