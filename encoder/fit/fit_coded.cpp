@@ -33,7 +33,7 @@ namespace gim {
 
 namespace {
 
-using Coordinates = DetailBasis::Coordinates;
+using Coordinates = ImageBasis::Coordinates;
 
 // Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit that
 // nothing precedes unfolds before each free round. In a search, quick fits precede and full ones follow each other. There
@@ -100,7 +100,7 @@ void average_glued(const GridGluing& gluing, std::vector<float>& image) {
 // The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
-    CoordinateSystem(const FitSystem& system, const DetailBasis& basis, const GridGluing& gluing)
+    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const GridGluing& gluing)
         : system_(system), basis_(basis), gluing_(gluing) {
         for (size_t k = 0; k < 3; ++k) {
             in_[k].resize(system.right.size());
@@ -139,7 +139,7 @@ class CoordinateSystem {
     }
 
     const FitSystem& system_;
-    const DetailBasis& basis_;
+    const ImageBasis& basis_;
     const GridGluing& gluing_;
     Channels in_, out_;
 };
