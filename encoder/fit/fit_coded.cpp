@@ -28,7 +28,7 @@ namespace gim {
 
 namespace {
 
-using Coordinates = FitBasis::Coordinates;
+using Coordinates = ImageBasis::Coordinates;
 
 // Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit that
 // nothing precedes unfolds before each free round. In a search, quick fits precede and full ones follow each other. There
@@ -95,7 +95,7 @@ void average_glued(const GridGluing& gluing, std::vector<float>& image) {
 // The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
-    CoordinateSystem(const FitSystem& system, const FitBasis& basis, const GridGluing& gluing)
+    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const GridGluing& gluing)
         : system_(system), basis_(basis), gluing_(gluing) {
         for (size_t k = 0; k < 3; ++k) {
             in_[k].resize(system.right.size());
@@ -134,7 +134,7 @@ class CoordinateSystem {
     }
 
     const FitSystem& system_;
-    const FitBasis& basis_;
+    const ImageBasis& basis_;
     const GridGluing& gluing_;
     Channels in_, out_;
 };
@@ -224,7 +224,7 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const std::unique_ptr<FitBasis> basis = codec->basis(image, coding);
+        const std::unique_ptr<ImageBasis> basis = codec->basis(image, coding);
         const Coordinates c = basis->analyse(image);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
         CoordinateSystem coordinates(system, *basis, gluing);

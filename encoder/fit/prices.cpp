@@ -17,7 +17,7 @@ constexpr float kLeastArea = 0.05f;      // for preconditioning only
 
 }  // namespace
 
-Prices::Prices(const FitBasis& basis, const FitBasis::Coordinates& c, float quantizer, Free free)
+Prices::Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free)
     : price(c.size()), inverse(c.size()) {
     const auto ln2 = static_cast<float>(std::log(2.0));
     const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "encoder/fit/fit_codec.h"
+#include "encoder/fit/image_basis.h"
 
 namespace gim {
 
@@ -14,7 +14,7 @@ struct Prices {
     std::vector<float> price, inverse;
 
     // c: the current coordinates.
-    Prices(const FitBasis& basis, const FitBasis::Coordinates& c, float quantizer, Free free);
+    Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free);
 };
 
 }  // namespace gim

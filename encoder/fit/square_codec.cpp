@@ -28,7 +28,7 @@ SquareCodec::SquareCodec(uint32_t side, const SeamTable& seams, const GridGluing
       repair_(gluing, reference, frame, front, {CodedPart{side, side, 0, 0, &seams_, {}}},
               [this](std::vector<float>& image) { fuse_seams(image); }) {}
 
-std::unique_ptr<FitBasis> SquareCodec::basis(const std::vector<float>& image, const DetailCoding& coding) const {
+std::unique_ptr<ImageBasis> SquareCodec::basis(const std::vector<float>& image, const DetailCoding& coding) const {
     return std::make_unique<DetailBasis>(image, side_, coding, &seams_);
 }
 

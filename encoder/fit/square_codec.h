@@ -15,7 +15,7 @@ class SquareCodec final : public FitCodec {
     SquareCodec(const SquareCodec&) = delete;
     SquareCodec& operator=(const SquareCodec&) = delete;
 
-    std::unique_ptr<FitBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override;
+    std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override;
     std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) override;
     void repair(Pyramid<int32_t>& bands, const Units& units) override;
 

@@ -78,7 +78,7 @@ TEST(Prices, LargerDetailsAndFinerStepsCostLess) {
     const Prices cheap(basis, large, 8, Free::kAll), dear(basis, small, 8, Free::kAll),
         fine(basis, large, 4, Free::kAll), held(basis, large, 8, Free::kNormals);
     for (size_t i = 0; i < basis.size(); ++i) {
-        if (i < DetailBasis::kBase) {
+        if (i < basis.base_size()) {
             ASSERT_EQ(cheap.price[i], 0) << "the base is not paid for";
             continue;
         }
