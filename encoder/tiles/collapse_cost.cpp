@@ -31,7 +31,7 @@ constexpr double kValenceWeight = 0.1;
 // No quad may cut a vertex of three edges, so it often leaves a neighbour with two quads.
 constexpr double kThreeEdgesPenalty = 20;
 
-constexpr double kDoubletFactor = 10;
+constexpr double kDoubletFactor = 100;
 
 double squared(double x) { return x * x; }
 

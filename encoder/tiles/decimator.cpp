@@ -104,14 +104,12 @@ void Decimator::collapse(uint32_t vertex, uint32_t into) {
     collapse(mesh_.find_halfedge(mesh_.vertex_handle(vertex), mesh_.vertex_handle(into)));
 }
 
-bool Decimator::remove(uint32_t vertex) {
+CollapseCost::Candidate Decimator::best(uint32_t vertex) {
     for (const Rules rules : {Rules::kAll, Rules::kLooseShape}) {
         const CollapseCost::Candidate candidate = costs_.best(mesh_.vertex_handle(vertex), rules);
-        if (!candidate.edge.is_valid() || !above_floor(candidate.edge)) continue;
-        collapse(candidate.edge);
-        return true;
+        if (candidate.edge.is_valid() && above_floor(candidate.edge)) return candidate;
     }
-    return false;
+    return {0, HalfedgeHandle()};
 }
 
 std::optional<double> Decimator::cost_of(HalfedgeHandle h) {

@@ -21,8 +21,8 @@ class Decimator {
     // Makes one collapse, whatever it costs; it must keep a manifold.
     void collapse(OpenMesh::HalfedgeHandle h);
     void collapse(uint32_t vertex, uint32_t into);
-    // Removes a vertex by the cheapest collapse that keeps all creases. Returns whether there was one.
-    bool remove(uint32_t vertex);
+    // The cheapest collapse of a vertex that keeps all creases; its edge is invalid if there is none.
+    CollapseCost::Candidate best(uint32_t vertex);
     // What a collapse costs that keeps all creases; nothing if it is forbidden.
     std::optional<double> cost_of(OpenMesh::HalfedgeHandle h);
 
