@@ -1,8 +1,8 @@
 #include "encoder/tiles/part_base.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "encoder/base/disjoint_sets.h"
 #include "encoder/tiles/base_mesh.h"
 #include "encoder/tiles/even_patches.h"
 
@@ -10,127 +10,109 @@ namespace gim {
 
 namespace {
 
-// Tries with finer cuts. A large base is paired less often, because that takes longer.
-constexpr uint32_t kMostTries = 24, kFacesTried = 12000;
-// Repairs look at the cheapest collapses around a doublet, and at as many after each of them.
-constexpr size_t kBranches = 4;
-constexpr int kDeepest = 2;
-// Rounds of pairing that tell whether a repair helps.
-constexpr uint32_t kQuickRounds = 10;
+// Tries in all, and tries until the base may be larger. A large base is tried less often, because that takes longer.
+constexpr uint32_t kMostTries = 120, kFacesTried = 24000, kTriesPerSize = 12;
+// Rounds of pairing that tell whether a base has faults.
+constexpr uint32_t kQuickRounds = 15;
 
 struct Try {
-    std::vector<HalfEdgeCollapse> collapses;
-    std::vector<uint32_t> removed_by;
-    std::vector<uint32_t> doublets;
+    PartBase base;
+    BaseMesh mesh;
+    QuadPairing pairing;
     size_t faults = SIZE_MAX;
-    double cost = HUGE_VAL;  // of the repairs
 };
 
 class PartTries {
   public:
-    explicit PartTries(const PartMesh& part) : part_(part) {}
+    explicit PartTries(const PartMesh& part) : part_(part), seeds_(part.mesh.positions.size(), 0) {}
 
-    // The first collapses of the list, and those that make the patches even.
-    Try cut(uint32_t count) const {
-        Decimator decimator(part_.mesh, part_.sharp, part_.shares);
-        for (uint32_t i = 0; i < count; ++i) decimator.collapse(part_.collapses[i].vertex, part_.collapses[i].into);
-        make_patches_even(decimator);
-        return judge(decimator, 0, 2 * kQuickRounds);
-    }
-
-    // Collapses vertices around doublets as long as that leaves fewer faults.
-    Try repair(Try now) const {
-        while (now.faults > 0) {
-            Try best = now;
-            for (const uint32_t doublet : now.doublets) {
-                Try repaired = now;
-                search(now, neighbourhood(now, doublet), 1, repaired);
-                if (repaired.faults < now.faults && better(repaired, best)) best = std::move(repaired);
-            }
-            if (best.faults >= now.faults) break;
-            now = std::move(best);
-        }
-        return now;
-    }
+    Try first(uint32_t count);
+    // Varies the base around the faults of the one before.
+    Try vary(const Try& before, uint32_t faces, uint32_t seed);
 
   private:
-    static bool better(const Try& a, const Try& b) { return a.faults != b.faults ? a.faults < b.faults : a.cost < b.cost; }
-
-    Try judge(const Decimator& decimator, double cost, uint32_t rounds) const;
-    std::vector<uint32_t> neighbourhood(const Try& now, uint32_t vertex) const;
-    void search(const Try& now, const std::vector<uint32_t>& vertices, int depth, Try& best) const;
+    Try judge(Decimator& decimator) const;
+    std::vector<bool> near_faults(const Try& before) const;
 
     const PartMesh& part_;
+    std::vector<uint32_t> seeds_;  // per vertex of the part
 };
 
-void replay(Decimator& decimator, const std::vector<HalfEdgeCollapse>& collapses) {
-    for (const HalfEdgeCollapse& c : collapses) decimator.collapse(c.vertex, c.into);
+Try PartTries::judge(Decimator& decimator) const {
+    make_patches_even(decimator);
+    Try result{{decimator.collapses(), decimator.removed_by()},
+               base_after(part_.mesh, part_.sharp, decimator.collapses(), decimator.removed_by()),
+               {}};
+    result.pairing = pair_triangles(part_.mesh.positions, result.mesh, kQuickRounds);
+    const QuadPairing& p = result.pairing;
+    result.faults = 1000 * p.unpaired.size() + p.crossed.size() + p.doublets.size() + p.twins;
+    return result;
 }
 
-Try PartTries::judge(const Decimator& decimator, double cost, uint32_t rounds) const {
-    const BaseMesh base = base_after(part_.mesh, part_.sharp, decimator.collapses(), decimator.removed_by());
-    const QuadPairing pairing = pair_triangles(part_.mesh.positions, base, rounds);
-    const size_t faults =
-        1000 * pairing.unpaired.size() + pairing.crossed.size() + pairing.doublets.size() + pairing.twins;
-    return {decimator.collapses(), decimator.removed_by(), pairing.doublets, faults, cost};
-}
-
-std::vector<uint32_t> PartTries::neighbourhood(const Try& now, uint32_t vertex) const {
+Try PartTries::first(uint32_t count) {
     Decimator decimator(part_.mesh, part_.sharp, part_.shares);
-    replay(decimator, now.collapses);
-    std::vector<uint32_t> vertices{vertex};
-    const CollapseMesh& mesh = decimator.mesh();
-    for (auto w = mesh.cvv_begin(mesh.vertex_handle(vertex)); w.is_valid(); ++w) vertices.push_back(index(*w));
-    return vertices;
+    for (uint32_t i = 0; i < count; ++i) decimator.collapse(part_.collapses[i].vertex, part_.collapses[i].into);
+    return judge(decimator);
 }
 
-void PartTries::search(const Try& now, const std::vector<uint32_t>& vertices, int depth, Try& best) const {
-    struct Option {
-        double cost;
-        uint32_t vertex, into;
-        bool operator<(const Option& o) const { return cost != o.cost ? cost < o.cost : vertex < o.vertex; }
-    };
-    std::vector<Option> options;
-    {
-        Decimator decimator(part_.mesh, part_.sharp, part_.shares);
-        replay(decimator, now.collapses);
-        const CollapseMesh& mesh = decimator.mesh();
-        for (const uint32_t v : vertices) {
-            if (mesh.status(mesh.vertex_handle(v)).deleted()) continue;
-            const CollapseCost::Candidate candidate = decimator.best(v);
-            if (candidate.edge.is_valid())
-                options.push_back({candidate.cost, v, index(mesh.to_vertex_handle(candidate.edge))});
-        }
+// The vertices of patches that could not be paired, and those around doublets.
+std::vector<bool> PartTries::near_faults(const Try& before) const {
+    std::vector<bool> near(part_.mesh.positions.size(), false);
+    const std::vector<Triangle>& triangles = before.mesh.triangles;
+    const Topology topology = build_topology({part_.mesh.positions, triangles});
+    DisjointSets patches(triangles.size());
+    std::vector<uint32_t> faulty = before.pairing.unpaired;
+    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+        const uint32_t t = topology.twin[h], a = triangles[h / 3][h % 3], b = triangles[h / 3][(h % 3 + 1) % 3];
+        const std::array<uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
+        if (t == kNone) continue;
+        if (!std::binary_search(before.mesh.creases.begin(), before.mesh.creases.end(), edge))
+            patches.unite(h / 3, t / 3);
+        const auto& crossed = before.pairing.crossed;
+        if (std::find(crossed.begin(), crossed.end(), edge) != crossed.end()) faulty.push_back(h / 3);
     }
-    std::sort(options.begin(), options.end());
-    if (options.size() > kBranches) options.resize(kBranches);
-    std::vector<Try> tries;
-    for (const Option& option : options) {
-        Decimator decimator(part_.mesh, part_.sharp, part_.shares);
-        replay(decimator, now.collapses);
-        decimator.collapse(option.vertex, option.into);
-        make_patches_even(decimator);
-        tries.push_back(judge(decimator, now.cost + option.cost, kQuickRounds));
-        if (better(tries.back(), best)) best = tries.back();
+    std::vector<bool> faulty_patch(triangles.size(), false), doublet(near.size(), false);
+    for (const uint32_t f : faulty) faulty_patch[patches.find(f)] = true;
+    for (const uint32_t v : before.pairing.doublets) doublet[v] = true;
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+        const Triangle& t = triangles[f];
+        if (!faulty_patch[patches.find(f)] && !doublet[t[0]] && !doublet[t[1]] && !doublet[t[2]]) continue;
+        for (const uint32_t v : t) near[v] = true;
     }
-    if (depth == kDeepest) return;
-    for (const Try& deeper : tries) search(deeper, vertices, depth + 1, best);
+    // Vertices that moved there vary too.
+    for (size_t i = before.base.collapses.size(); i-- > 0;) {
+        const HalfEdgeCollapse& c = before.base.collapses[i];
+        if (near[c.into]) near[c.vertex] = true;
+    }
+    return near;
+}
+
+Try PartTries::vary(const Try& before, uint32_t faces, uint32_t seed) {
+    const std::vector<bool> near = near_faults(before);
+    const std::vector<uint32_t> old = seeds_;
+    for (size_t v = 0; v < near.size(); ++v) {
+        if (near[v]) seeds_[v] = seed;
+    }
+    Decimator decimator(part_.mesh, part_.sharp, part_.shares, seeds_);
+    decimator.run(faces);
+    Try result = judge(decimator);
+    if (result.faults > before.faults) seeds_ = old;
+    return result;
 }
 
 }  // namespace
 
 PartBase choose_part_base(const PartMesh& part, uint32_t count) {
-    const PartTries tries(part);
+    PartTries tries(part);
+    Try best = tries.first(count);
     const auto faces = static_cast<uint32_t>(part.mesh.triangles.size());
-    const uint32_t most = std::clamp(kFacesTried / faces, 2u, kMostTries);
-    Try best;
-    for (uint32_t i = 0; i < most && i <= count && best.faults > 0; ++i) {
-        Try now = tries.cut(count - i);
-        if (now.faults < best.faults) best = std::move(now);
+    const auto wanted = static_cast<uint32_t>(best.mesh.triangles.size());
+    const uint32_t most = std::clamp(kFacesTried / faces, 4u, kMostTries);
+    for (uint32_t i = 1; i <= most && best.faults > 0; ++i) {
+        Try now = tries.vary(best, wanted + 2 * (i / kTriesPerSize), i);
+        if (now.faults <= best.faults) best = std::move(now);
     }
-    best.cost = 0;
-    best = tries.repair(std::move(best));
-    return {std::move(best.collapses), std::move(best.removed_by)};
+    return std::move(best.base);
 }
 
 }  // namespace gim
