@@ -31,7 +31,9 @@ constexpr double kValenceWeight = 0.1;
 // No quad may cut a vertex of three edges, so it often leaves a neighbour with two quads.
 constexpr double kThreeEdgesPenalty = 20;
 
-constexpr double kDoubletFactor = 10;
+// Natural logarithm of the largest ratio between two varied costs.
+constexpr double kVariation = 3;
+constexpr double kDoubletFactor = 100;
 
 double squared(double x) { return x * x; }
 
@@ -210,6 +212,14 @@ double CollapseCost::valence_factor(size_t onto) const {
     return std::exp(kValenceWeight * std::clamp(change, -20.0, 30.0));
 }
 
+double CollapseCost::variation(size_t onto) const {
+    if (seeds_.empty() || seeds_[index(centre_)] == 0) return 1;
+    uint64_t hash =
+        (uint64_t{seeds_[index(centre_)]} << 40) ^ (uint64_t{index(centre_)} << 20) ^ index(spokes_[onto].end);
+    for (const int shift : {31, 29, 32}) hash = (hash ^ (hash >> shift)) * 0x9E3779B97F4A7C15u;
+    return std::exp(kVariation * (static_cast<double>(hash >> 11) * 0x1p-53 - 0.5));
+}
+
 // No quad may cut a vertex of three edges, and only one a vertex of four. So a vertex of three needs neighbours of five,
 // and a face of three vertices of four edges leaves one of them with two quads.
 bool CollapseCost::makes_doublet(size_t onto) {
@@ -247,7 +257,7 @@ std::optional<double> CollapseCost::cost(size_t onto, Rules rules, double limit)
     const VertexShare& mine = shares_[index(centre_)];
     const double error = std::max(0.0, mine.planes(spoke.at) + shares_[index(spoke.end)].planes(spoke.at));
     const double length = mine.area * (mesh_.place(centre_) - spoke.at).squaredNorm();
-    const double irregular = valence_factor(onto);
+    const double irregular = valence_factor(onto) * variation(onto);
     // Each term makes it dearer, so the dear ones are looked at last.
     double cost = (error + kLengthWeight * length) * irregular;
     if (cost >= limit || !features_allow(onto, rules)) return {};

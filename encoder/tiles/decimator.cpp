@@ -16,10 +16,12 @@ constexpr uint32_t kLeastSphere = 12, kLeastDisk = 2;
 
 }  // namespace
 
-Decimator::Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares)
+Decimator::Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares,
+                     std::vector<uint32_t> seeds)
     : mesh_(mesh, sharp),
       shares_(std::move(shares)),
-      costs_(mesh_, shares_),
+      seeds_(std::move(seeds)),
+      costs_(mesh_, shares_, seeds_),
       version_(mesh.positions.size(), 0),
       removed_by_(mesh.triangles.size(), kNone),
       faces_(static_cast<uint32_t>(mesh.triangles.size())) {
@@ -102,16 +104,6 @@ void Decimator::push_around(VertexHandle v, Rules rules) {
 
 void Decimator::collapse(uint32_t vertex, uint32_t into) {
     collapse(mesh_.find_halfedge(mesh_.vertex_handle(vertex), mesh_.vertex_handle(into)));
-}
-
-bool Decimator::remove(uint32_t vertex) {
-    for (const Rules rules : {Rules::kAll, Rules::kLooseShape}) {
-        const CollapseCost::Candidate candidate = costs_.best(mesh_.vertex_handle(vertex), rules);
-        if (!candidate.edge.is_valid() || !above_floor(candidate.edge)) continue;
-        collapse(candidate.edge);
-        return true;
-    }
-    return false;
 }
 
 std::optional<double> Decimator::cost_of(HalfedgeHandle h) {

@@ -12,7 +12,9 @@ namespace gim {
 class Decimator {
   public:
     // In: an oriented 2-manifold; per half-edge 3f+i whether it is a crease (empty: none); per vertex what it stands for.
-    Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares);
+    // Seeds per vertex: see CollapseCost.
+    Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares,
+              std::vector<uint32_t> seeds = {});
     Decimator(const Decimator&) = delete;
     Decimator& operator=(const Decimator&) = delete;
 
@@ -21,8 +23,6 @@ class Decimator {
     // Makes one collapse, whatever it costs; it must keep a manifold.
     void collapse(OpenMesh::HalfedgeHandle h);
     void collapse(uint32_t vertex, uint32_t into);
-    // Removes a vertex by the cheapest collapse that keeps all creases. Returns whether there was one.
-    bool remove(uint32_t vertex);
     // What a collapse costs that keeps all creases; nothing if it is forbidden.
     std::optional<double> cost_of(OpenMesh::HalfedgeHandle h);
 
@@ -50,6 +50,7 @@ class Decimator {
 
     CollapseMesh mesh_;
     std::vector<VertexShare> shares_;
+    std::vector<uint32_t> seeds_;
     CollapseCost costs_;
     std::vector<uint32_t> version_;
     std::priority_queue<Entry> queue_;

@@ -15,7 +15,6 @@ constexpr double kCreasePenalty = 1000;
 constexpr double kDoubletPenalty = 5;
 constexpr double kValencePenalty = 0.25;  // per squared difference from four quads
 constexpr double kWeightScale = 1e6;
-constexpr int kRounds = 40;
 
 // What all components share.
 struct Whole {
@@ -42,7 +41,7 @@ class Pairing {
     }
 
     // Per triangle of the component its diagonal, a half-edge of the base; nothing if there is no perfect matching.
-    std::vector<uint32_t> run();
+    std::vector<uint32_t> run(uint32_t rounds);
 
   private:
     struct Edge {
@@ -129,7 +128,7 @@ void Pairing::adapt_prices(double step) {
     }
 }
 
-std::vector<uint32_t> Pairing::run() {
+std::vector<uint32_t> Pairing::run(uint32_t rounds) {
     for (const uint32_t v : vertices_) {
         const double t = faces_at_[v];
         price_[v] = open_at(v) ? 0 : 0.15 * (t - 5) - (t == 3 ? 20 : 0) - (t == 4 ? 0.6 : 0);
@@ -137,7 +136,7 @@ std::vector<uint32_t> Pairing::run() {
     std::vector<uint32_t> best = match();
     if (best.empty()) return best;
     double best_value = judge(best);
-    for (int round = 0; round < kRounds; ++round) {
+    for (uint32_t round = 0; round < rounds; ++round) {
         adapt_prices(0.25 / (1 + 0.2 * round));
         std::vector<uint32_t> diagonals = match();
         const double value = judge(diagonals);
@@ -187,7 +186,7 @@ void find_doublets(const Whole& whole, QuadPairing& result) {
 
 }  // namespace
 
-QuadPairing pair_triangles(const std::vector<Vec3>& positions, const BaseMesh& base) {
+QuadPairing pair_triangles(const std::vector<Vec3>& positions, const BaseMesh& base, uint32_t rounds) {
     QuadPairing result;
     Whole whole{positions,
                 base,
@@ -202,7 +201,7 @@ QuadPairing pair_triangles(const std::vector<Vec3>& positions, const BaseMesh& b
     std::vector<std::vector<uint32_t>> triangles(components.count);
     for (uint32_t f = 0; f < base.triangles.size(); ++f) triangles[components.of_face[f]].push_back(f);
     for (const std::vector<uint32_t>& part : triangles) {
-        const std::vector<uint32_t> diagonals = Pairing(whole, part).run();
+        const std::vector<uint32_t> diagonals = Pairing(whole, part).run(rounds);
         if (diagonals.empty()) {
             result.unpaired.insert(result.unpaired.end(), part.begin(), part.end());
         } else {
