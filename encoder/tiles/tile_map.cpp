@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "encoder/surface/face_metrics.h"
@@ -23,6 +24,7 @@ constexpr int kBaseSweeps = 50;
 enum class Freedom : uint8_t {
     kFree,
     kSlides,  // along the border of a tile
+    kStray,   // belongs to such a border, but had no place there yet
     kPinned,  // to a corner of tiles
 };
 
@@ -40,6 +42,7 @@ class TileMapper {
         for (uint32_t v = 0; v < freedom_.size(); ++v) {
             if (!mesh_.present(v) || freedom_[v] == Freedom::kPinned) continue;
             const StarDescent descent = relax(v, 1);
+            if (freedom_[v] == Freedom::kStray) return_to_side(v);
             if (std::isfinite(descent.before)) gain += descent.before - descent.after, total += descent.after;
         }
         return total > 0 ? 3 * gain / total : 0;  // every triangle is in up to three stars
@@ -58,7 +61,7 @@ class TileMapper {
         const uint32_t v = collapse.vertex;
         refresh_metrics(v);
         freedom_[v] = mesh_.last_slides() ? Freedom::kSlides : Freedom::kFree;
-        if (!find_place(v, collapse.into) && !swap(collapse)) {
+        if (!find_place(v, collapse.into) && !swap(collapse) && !find_place_beside(collapse)) {
             mesh_.unsplit();
             metric_.resize(mesh_.face_count());
             refresh_metrics(collapse.into);
@@ -70,6 +73,11 @@ class TileMapper {
         return true;
     }
     uint32_t swapped() const { return swapped_; }
+    size_t stray() const {
+        size_t count = 0;
+        for (uint32_t v = 0; v < freedom_.size(); ++v) count += mesh_.present(v) && freedom_[v] == Freedom::kStray;
+        return count;
+    }
 
   private:
     void refresh_metrics(uint32_t v) {
@@ -107,7 +115,10 @@ class TileMapper {
     // Puts v, which lies at the place of `into`, inside its star.
     bool find_place(uint32_t v, uint32_t into) {
         load_star(v);
-        if (freedom_[v] == Freedom::kSlides) return find_place_on_side(v, into);
+        if (freedom_[v] == Freedom::kSlides) {
+            const std::optional<Vec2> beyond = next_on_side(into);
+            return beyond && place_between(v, Vec2::Zero(), *beyond);
+        }
         Vec2 mean = Vec2::Zero(), inside = Vec2::Zero();
         for (const StarTriangle& t : star_) mean += t.p1;
         mean /= static_cast<double>(star_.size());
@@ -122,26 +133,63 @@ class TileMapper {
         return mesh_.move(spokes_, x) || mesh_.move(spokes_, start);
     }
 
-    // The same on the side of a tile between `into` and the next vertex there.
-    bool find_place_on_side(uint32_t v, uint32_t into) {
-        Vec2 way = Vec2::Zero();
+    // The place of the neighbour on the side of a tile that is not w. Places count from the star's vertex.
+    std::optional<Vec2> next_on_side(uint32_t w) const {
         for (const Spoke& spoke : spokes_) {
-            if (mesh_.is_side(spoke.half_edge) && mesh_.target(spoke.half_edge) != into) way = spoke.p1;
+            const uint32_t h = spoke.half_edge;
+            if (mesh_.is_side(h) && mesh_.target(h) != w) return spoke.p1;
+            if (mesh_.is_side(prev(h)) && mesh_.origin(prev(h)) != w) return spoke.p2;
         }
+        return std::nullopt;
+    }
+
+    // Puts v between two points on the side of a tile.
+    bool place_between(uint32_t v, const Vec2& first, const Vec2& last) {
+        const Vec2 way = last - first;
+        if (way.x() != 0 && way.y() != 0) return false;
         double low = 0, high = 1;
-        for (const StarTriangle& t : star_) {  // where p + s * way is left of the outer edge
-            const double at_start = cross(t.p1, t.p2), at_end = cross(t.p1 - way, t.p2 - way);
-            if (at_start <= 0 && at_end <= 0) return false;
-            if (at_start < 0) low = std::max(low, at_start / (at_start - at_end));
-            if (at_end < 0) high = std::min(high, at_start / (at_start - at_end));
+        for (const StarTriangle& t : star_) {  // where first + s * way is left of the outer edge
+            const double at_first = cross(t.p1 - first, t.p2 - first), at_last = cross(t.p1 - last, t.p2 - last);
+            if (at_first <= 0 && at_last <= 0) return false;
+            if (at_first < 0) low = std::max(low, at_first / (at_first - at_last));
+            if (at_last < 0) high = std::min(high, at_first / (at_first - at_last));
         }
         if (!(low < high)) return false;
-        const Vec2 start = 0.5 * (low + high) * way;
+        const Vec2 start = first + 0.5 * (low + high) * way;
         const double angle = mesh_.on_boundary(v) ? std::numbers::pi : 2 * std::numbers::pi;
         if (!winds_once(start, angle)) return false;
         Vec2 x = start;
         descend_star(star_, x, 4, way.x() == 0 ? 1 : 0);
         return mesh_.move(spokes_, x) || mesh_.move(spokes_, start);
+    }
+
+    // Puts a vertex of a crease, for which there is no room on the crease, anywhere in its star. Finer faces will give it
+    // room. If there is no place at all, a corner of tiles leaves its crease.
+    bool find_place_beside(const HalfEdgeCollapse& collapse) {
+        if (mesh_.on_boundary(collapse.vertex)) return false;
+        if (freedom_[collapse.vertex] == Freedom::kSlides) {
+            freedom_[collapse.vertex] = Freedom::kStray;
+            if (find_place(collapse.vertex, collapse.into)) return true;
+        }
+        return freedom_[collapse.into] == Freedom::kPinned && !mesh_.on_boundary(collapse.into) &&
+               trade_places(collapse.vertex, collapse.into, Freedom::kStray);
+    }
+
+    // Moves a stray vertex back to the side of its tile if its neighbours are there and its star has room.
+    void return_to_side(uint32_t v) {
+        load_star(v);
+        std::array<Vec2, 2> ends;
+        size_t count = 0;
+        for (const Spoke& spoke : spokes_) {
+            if (!mesh_.is_side(spoke.half_edge)) continue;
+            if (count == 2 || freedom_[mesh_.target(spoke.half_edge)] == Freedom::kStray) return;
+            ends[count++] = spoke.p1;
+        }
+        if (count != 2) return;
+        const Vec2 at = mesh_.place(spokes_.front().half_edge) + ends[0];
+        const bool upright = ends[0].x() == ends[1].x() && at.x() == std::floor(at.x());
+        const bool level = ends[0].y() == ends[1].y() && at.y() == std::floor(at.y());
+        if ((upright || level) && place_between(v, ends[0], ends[1])) freedom_[v] = Freedom::kSlides;
     }
 
     // Returns whether the triangles of the star are counter-clockwise around x, and go around it once.
@@ -156,18 +204,26 @@ class TileMapper {
     }
 
     // Lets the vertex that came back take the place of the base vertex that it was split from, and finds a place for
-    // that one. So a fan of more than a full turn around a cone does no harm: the other side is less than a turn.
+    // that one. So a fan of more than a full turn around a cone does no harm: the other side is less than a turn. On a
+    // side the same holds for half a turn.
     bool swap(const HalfEdgeCollapse& collapse) {
         const uint32_t v = collapse.vertex, w = collapse.into;
-        if (freedom_[w] != Freedom::kPinned || freedom_[v] != Freedom::kFree || mesh_.on_boundary(w)) return false;
-        bool on_side = false;
-        mesh_.for_each_outgoing(w, [&](uint32_t h) { on_side |= mesh_.is_side(h); });
-        if (on_side) return false;
-        mesh_.begin_star_at(w, v);
-        freedom_[w] = Freedom::kFree;
+        if (freedom_[w] != Freedom::kPinned) return false;
+        size_t sides = mesh_.on_boundary(w) ? 1 : 0;  // the last edge leaves nothing from w
+        mesh_.for_each_outgoing(w, [&](uint32_t h) { sides += mesh_.is_side(h); });
+        if (sides != (freedom_[v] == Freedom::kSlides ? 2u : 0u)) return false;
+        return trade_places(v, w, freedom_[v]);
+    }
+
+    // Pins v, which lies at the place of w, there, and finds another place for w, which may then do as `freedom` says.
+    bool trade_places(uint32_t v, uint32_t w, Freedom freedom) {
+        const Freedom before = freedom_[v];
+        if (!mesh_.on_boundary(w)) mesh_.begin_star_at(w, v);
+        freedom_[w] = freedom;
         freedom_[v] = Freedom::kPinned;
         if (!find_place(w, v)) {
             freedom_[w] = Freedom::kPinned;
+            freedom_[v] = before;
             return false;
         }
         for (Quad& quad : quads_) std::replace(quad.begin(), quad.end(), w, v);
@@ -301,6 +357,7 @@ Result<TileMap> map_tiles(const Mesh& dense, const BaseMesh& base, const std::ve
     TileMap map = read_map(mesh, dense, walker);
     map.quads = std::move(corners);
     map.swapped = mapper.swapped();
+    map.stray = mapper.stray();
     for (const uint32_t k : waiting) map.left_out.push_back(base.collapses[k].vertex);
     return map;
 }

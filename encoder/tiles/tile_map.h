@@ -48,6 +48,7 @@ struct TileMap {
     std::vector<TileTriangle> placed;   // per triangle: counter-clockwise; edges are as long as on the other side
     std::vector<TilePlace> places;      // per vertex; of several tiles that share it, any one
     std::vector<uint32_t> left_out;     // vertices without a place: the triangles do without them
+    size_t stray = 0;                   // vertices of creases that lie beside the borders of their tiles
     uint32_t swapped = 0;               // vertices that took a base vertex's place at the corners of tiles
 };
 
