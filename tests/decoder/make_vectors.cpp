@@ -382,7 +382,7 @@ void write_valid_tiles(Writer& out) {
     out.valid("tiles-one-lossy", encode_tiles(tiles(strip(1, 1), 5, 300, 2), lossy(12, 9, 60)));
     out.valid("tiles-cube-lossless", encode_tiles(tiles(cube(), 2, 9, 3), lossless(12, 3)));
     out.valid("tiles-cube-lossy", encode_tiles(tiles(cube(), 3, 9, 3), lossy(12, 5, 6)));
-    out.valid("tiles-torus-lossy", encode_tiles(tiles(torus(3, 3), 3, 0, 4), lossy(14, 3, 40)));
+    out.valid("tiles-torus-lossy", encode_tiles(tiles(test::torus(3, 3), 3, 0, 4), lossy(14, 3, 40)));
     out.valid("tiles-strip-lossy-coarse", encode_tiles(tiles(strip(3, 2), 3, 0, 5), lossy(12, 3, 500)));
     out.valid("tiles-pillow-lossless-20-bits", encode_tiles(tiles(pillow(), 3, 1u << 22, 6), lossless(20, 3)));
     out.valid("tiles-two-components-lossy",
@@ -393,9 +393,12 @@ void write_valid_tiles(Writer& out) {
     for (uint32_t h = 0; h < 4 * sharp.quads.size(); ++h) sharp.sharp.push_back(h % 3 == 0);
     out.valid("tiles-genus-2-sharp-lossy", encode_tiles(sharp, lossy(12, 3, 10)));
     // Details that are not in frames; and a wide origin.
-    const Bytes framed = encode_tiles(tiles(cube(), 2, 60, 10), lossy(12, 3, 20));
-    out.valid("tiles-frames-none", with_parts(framed, [](Parts& p) { p.header.tangential = p.header.cell_area = 0; }));
-    out.valid("tiles-wide-origin", far_away(framed));
+    const TileImage noisy = tiles(cube(), 2, 60, 10);
+    CodingParameters plain = lossy(12, 3, 20);
+    plain.units = tile_units(noisy, 12).value();
+    plain.units->tangential = plain.units->cell_area = 0;
+    out.valid("tiles-frames-none", encode_tiles(noisy, plain));
+    out.valid("tiles-wide-origin", far_away(encode_tiles(noisy, lossy(12, 3, 20))));
 }
 
 void write_invalid_tiles(Writer& out) {
