@@ -17,6 +17,7 @@
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/local_frame.h"
+#include "encoder/tiles/best_tiles.h"
 #include "encoder/within_budget.h"
 
 namespace gim {
@@ -54,7 +55,9 @@ Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, E
     return within_budget(options, [&](const EncodeOptions& now) {
         cuts = {};
         const bool is_first = now.rate.value == options.rate.value;
-        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+        const Observer shown = is_first ? observer : Observer();
+        return layout.layout == Layout::kTiles ? best_of_tiles(make_and_code, now, clock, shown)
+                                               : best_of_sides(make_and_code, now, clock, shown);
     });
 }
 

@@ -6,6 +6,9 @@
 
 #include "encoder/fit/fit.h"
 #include "encoder/fit/fit_strength.h"
+#include "encoder/image/density.h"
+#include "encoder/surface/closest_point.h"
+#include "encoder/surface/stretch.h"
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/tile_base.h"
@@ -18,7 +21,6 @@ namespace {
 
 // What squeezing the surface costs in the map (tile_map.h).
 constexpr double kCodedSqueeze = 1, kLosslessSqueeze = 0.2;
-constexpr uint32_t kUsualTiles = 120;
 
 // The finest tiles whose atlas has at most so many samples; at least 2 x 2 intervals.
 uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
@@ -44,11 +46,43 @@ Result<TiledSurface> find_base(const Mesh& mesh, uint32_t tiles) {
     return made;
 }
 
+struct Sampled {
+    TileImage tiles;
+    GeometryImage atlas;
+};
+Result<Sampled> sample(const Mesh& dense, const TileMap& map, uint32_t exponent) {
+    GIM_TRY(points, locate_samples(map, 1u << exponent));
+    Sampled sampled{sample_tiles(dense.positions, map, points, exponent), {}};
+    GIM_TRY(atlas, atlas_of(sampled.tiles));
+    sampled.atlas = std::move(atlas);
+    return sampled;
+}
+
+VertexAreas areas_of(const Mesh& dense, const TileMap& map) {
+    const size_t count = dense.positions.size();
+    VertexAreas areas{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
+    for (size_t f = 0; f < map.triangles.size(); ++f) {
+        const auto& at = map.placed[f].corners;
+        const double square = twice_signed_area(at[0], at[1], at[2]);
+        for (const uint32_t v : map.triangles[f]) areas.square[v] += square;
+    }
+    for (uint32_t f = 0; f < dense.triangles.size(); ++f) {
+        for (const uint32_t v : dense.triangles[f]) areas.surface[v] += 2 * face_area(dense, f);
+    }
+    return areas;
+}
+
+// How much each vertex of the mesh should count, from the error that a first sampling leaves.
+std::vector<double> importance_from(const Mesh& dense, const TileMap& map, const GeometryImage& atlas, bool lossless) {
+    const auto closest = ClosestPointTree(surface_of(atlas).mesh).find_all(dense.positions);
+    return importance_of(dense, areas_of(dense, map), closest, lossless ? DensityOptions{} : kCodedDensity);
+}
+
 }  // namespace
 
 Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, StageClock& clock, const Observer&) {
     clock.begin(Stage::kCut);
-    GIM_TRY(surface, find_base(mesh, options.tiles > 0 ? options.tiles : kUsualTiles));
+    GIM_TRY(surface, find_base(mesh, options.tiles));
     const Mesh& dense = surface.input.mesh;
 
     clock.begin(Stage::kParametrize);
@@ -59,12 +93,19 @@ Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, Sta
     MadeTiles made;
     made.stretch_efficiency = stretch_efficiency(dense.positions, map);
 
-    clock.begin(Stage::kSample);
     const uint32_t exponent = exponent_within(static_cast<uint32_t>(map.quads.size()), options.samples);
-    GIM_TRY(points, locate_samples(map, 1u << exponent));
-    made.tiles = sample_tiles(dense.positions, map, points, exponent);
-    GIM_TRY(atlas, atlas_of(made.tiles));
-    made.atlas = std::move(atlas);
+    if (options.density) {
+        GIM_TRY(first, sample(dense, map, exponent));
+        map_options.importance = importance_from(dense, map, first.atlas, lossless);
+        GIM_TRY(adapted,
+                map_tiles(dense, surface.base.base, surface.base.pairing.quads, map_options, clock.progress()));
+        map = std::move(adapted);
+    }
+
+    clock.begin(Stage::kSample);
+    GIM_TRY(sampled, sample(dense, map, exponent));
+    made.tiles = std::move(sampled.tiles);
+    made.atlas = std::move(sampled.atlas);
     const auto strength = fit_strength(options);
     if (!strength) return made;
 

@@ -19,7 +19,7 @@ struct MadeTiles {
 };
 
 // In:  a clean mesh with any number of components, boundaries and handles.
-// Out: about options.tiles tiles, as fine as options.samples allows.
+// Out: about options.tiles (not 0) tiles, as fine as options.samples allows.
 // Cost: O(F log F), and the fit.
 Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
                              const Observer& observer);
