@@ -44,6 +44,8 @@ class BaseHierarchy {
     BaseHierarchy(const Mesh& mesh, const std::vector<bool>& sharp);
 
     const std::vector<HalfEdgeCollapse>& collapses() const { return collapses_; }
+    // Per input face: how many collapses precede the one that removes it; kNone if none does.
+    const std::vector<uint32_t>& removed_by() const { return removed_by_; }
     // Number of collapses until at most so many faces are left: all of them if the smallest base has more.
     uint32_t collapses_down_to(uint32_t faces) const;
     // The base after the first `count` collapses. O(F).
@@ -54,7 +56,7 @@ class BaseHierarchy {
 
   private:
     std::vector<HalfEdgeCollapse> collapses_;
-    std::vector<uint32_t> removed_by_;  // per input face
+    std::vector<uint32_t> removed_by_;
     std::vector<bool> sharp_;
     uint32_t well_shaped_ = 0, with_all_creases_ = 0;
 };

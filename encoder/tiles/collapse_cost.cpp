@@ -31,6 +31,10 @@ constexpr double kValenceWeight = 0.1;
 // No quad may cut a vertex of three edges, so it often leaves a neighbour with two quads.
 constexpr double kThreeEdgesPenalty = 20;
 
+// Natural logarithm of the largest ratio between two varied costs.
+constexpr double kVariation = 3;
+constexpr double kDoubletFactor = 100;
+
 double squared(double x) { return x * x; }
 
 // The longest squared edge over twice the area, 1 for an equilateral triangle.
@@ -159,7 +163,8 @@ double CollapseCost::squared_gap(size_t onto) const {
     for (size_t i = 0; i < face_count(); ++i) {
         if (vanishes(i, onto)) continue;
         const Vec3 point =
-            closest_point_on_triangle(mesh_.place(centre_), spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at).point;
+            closest_point_on_triangle(mesh_.place(centre_), spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at)
+                .point;
         least = std::min(least, (mesh_.place(centre_) - point).squaredNorm());
     }
     return least;
@@ -207,28 +212,77 @@ double CollapseCost::valence_factor(size_t onto) const {
     return std::exp(kValenceWeight * std::clamp(change, -20.0, 30.0));
 }
 
+double CollapseCost::variation(size_t onto) const {
+    if (seeds_.empty() || seeds_[index(centre_)] == 0) return 1;
+    uint64_t hash =
+        (uint64_t{seeds_[index(centre_)]} << 40) ^ (uint64_t{index(centre_)} << 20) ^ index(spokes_[onto].end);
+    for (const int shift : {31, 29, 32}) hash = (hash ^ (hash >> shift)) * 0x9E3779B97F4A7C15u;
+    return std::exp(kVariation * (static_cast<double>(hash >> 11) * 0x1p-53 - 0.5));
+}
+
+// No quad may cut a vertex of three edges, and only one a vertex of four. So a vertex of three needs neighbours of five,
+// and a face of three vertices of four edges leaves one of them with two quads.
+bool CollapseCost::makes_doublet(size_t onto) {
+    const VertexHandle into = spokes_[onto].end;
+    VertexHandle sides[2];
+    size_t side_count = 0;
+    for (size_t i = 0; i < spokes_.size(); ++i) {
+        if (i != onto && joins(i, onto)) sides[side_count++] = spokes_[i].end;
+    }
+    const auto edges = [&](VertexHandle w) -> uint32_t {
+        if (mesh_.is_boundary(w)) return 6;
+        if (w == into) return mesh_.edge_count(w) + mesh_.edge_count(centre_) - 2 - static_cast<uint32_t>(side_count);
+        const bool loses = (side_count > 0 && w == sides[0]) || (side_count > 1 && w == sides[1]);
+        return mesh_.edge_count(w) - loses;
+    };
+    for (size_t s = 0; s < side_count; ++s) {
+        const uint32_t mine = edges(sides[s]);
+        if (mine > 4) continue;
+        mesh_.outgoing(sides[s], ring_);
+        uint32_t before = 6;  // edges of the neighbour before
+        for (size_t i = 0; i <= ring_.size(); ++i) {
+            const VertexHandle w = mesh_.to_vertex_handle(ring_[i == ring_.size() ? 0 : i]);
+            if (w == centre_) continue;
+            const uint32_t theirs = edges(w);
+            if (mine == 3 && theirs <= 4) return true;
+            if (mine == 4 && (theirs == 3 || (theirs == 4 && before == 4))) return true;
+            before = theirs;
+        }
+    }
+    return false;
+}
+
+std::optional<double> CollapseCost::cost(size_t onto, Rules rules, double limit) {
+    const Spoke& spoke = spokes_[onto];
+    const VertexShare& mine = shares_[index(centre_)];
+    const double error = std::max(0.0, mine.planes(spoke.at) + shares_[index(spoke.end)].planes(spoke.at));
+    const double length = mine.area * (mesh_.place(centre_) - spoke.at).squaredNorm();
+    const double irregular = valence_factor(onto) * variation(onto);
+    // Each term makes it dearer, so the dear ones are looked at last.
+    double cost = (error + kLengthWeight * length) * irregular;
+    if (cost >= limit || !features_allow(onto, rules)) return {};
+    cost += kTipWeight * mine.area * squared_gap(onto) * irregular;
+    if (cost >= limit) return {};
+    if (makes_doublet(onto)) cost *= kDoubletFactor;
+    if (cost >= limit) return {};
+    const auto shape = shape_factor(onto, rules);
+    if (!shape || cost * *shape >= limit || !mesh_.is_collapse_ok(spoke.edge)) return {};
+    return cost * *shape;
+}
+
 CollapseCost::Candidate CollapseCost::best(VertexHandle v, Rules rules) {
     gather(v);
-    Candidate result;
-    const VertexShare& mine = shares_[static_cast<size_t>(v.idx())];
+    Candidate result{HUGE_VAL, HalfedgeHandle()};
     for (size_t i = 0; i < spokes_.size(); ++i) {
-        const Vec3& place = spokes_[i].at;
-        const VertexShare& other = shares_[static_cast<size_t>(spokes_[i].end.idx())];
-        const double error = std::max(0.0, mine.planes(place) + other.planes(place));
-        const double length = mine.area * (mesh_.place(v) - place).squaredNorm();
-        const double irregular = valence_factor(i);
-        double cost = (error + kLengthWeight * length) * irregular;
-        // The shape can only make it dearer.
-        if ((result.edge.is_valid() && cost >= result.cost) || !features_allow(i, rules)) continue;
-        cost += kTipWeight * mine.area * squared_gap(i) * irregular;
-        if (result.edge.is_valid() && cost >= result.cost) continue;
-        const auto shape = shape_factor(i, rules);
-        if (!shape) continue;
-        cost *= *shape;
-        if (result.edge.is_valid() && cost >= result.cost) continue;
-        if (mesh_.is_collapse_ok(spokes_[i].edge)) result = {cost, spokes_[i].edge};
+        if (const auto now = cost(i, rules, result.cost)) result = {*now, spokes_[i].edge};
     }
     return result;
+}
+
+std::optional<double> CollapseCost::cost_of(HalfedgeHandle h, Rules rules) {
+    gather(mesh_.from_vertex_handle(h));
+    const auto onto = std::find(outgoing_.begin(), outgoing_.end(), h);
+    return cost(static_cast<size_t>(onto - outgoing_.begin()), rules, HUGE_VAL);
 }
 
 double CollapseCost::fan_angle(HalfedgeHandle h) {

@@ -38,8 +38,10 @@ enum class Rules : uint8_t {
 
 class CollapseCost {
   public:
-    // Both must outlive this.
-    CollapseCost(CollapseMesh& mesh, const std::vector<VertexShare>& shares) : mesh_(mesh), shares_(shares) {}
+    // All must outlive this. Where the seed of a vertex is not 0, its costs vary by a factor that depends on it, so that
+    // another base comes out. No seeds: none vary.
+    CollapseCost(CollapseMesh& mesh, const std::vector<VertexShare>& shares, const std::vector<uint32_t>& seeds)
+        : mesh_(mesh), shares_(shares), seeds_(seeds) {}
 
     struct Candidate {
         double cost = 0;
@@ -47,6 +49,9 @@ class CollapseCost {
     };
     // Returns the cheapest collapse of v onto a neighbour. O(valence^2).
     Candidate best(OpenMesh::VertexHandle v, Rules rules);
+
+    // What one collapse costs; nothing if it is forbidden. O(valence).
+    std::optional<double> cost_of(OpenMesh::HalfedgeHandle h, Rules rules);
 
     // The angle at into of the faces that the collapse leaves in place of vertex's, in radians.
     double fan_angle(OpenMesh::HalfedgeHandle h);
@@ -72,14 +77,21 @@ class CollapseCost {
     // How much the shape of the new faces multiplies the cost; nothing if they are forbidden.
     std::optional<double> shape_factor(size_t onto, Rules rules) const;
     double squared_gap(size_t onto) const;
+    double variation(size_t onto) const;
     double valence_factor(size_t onto) const;
+    // Whether the collapse leaves faces that cannot be paired without a vertex of two quads.
+    bool makes_doublet(size_t onto);
     double fan(size_t onto) const;
+    // Nothing if it is forbidden, or costs no less than `limit`.
+    std::optional<double> cost(size_t onto, Rules rules, double limit);
 
     CollapseMesh& mesh_;  // its own check marks vertices, and leaves no other trace
     const std::vector<VertexShare>& shares_;
+    const std::vector<uint32_t>& seeds_;
     OpenMesh::VertexHandle centre_;
     std::vector<OpenMesh::HalfedgeHandle> outgoing_;
     std::vector<Spoke> spokes_;
+    std::vector<OpenMesh::HalfedgeHandle> ring_;
     bool closed_ = true;
 };
 

@@ -17,11 +17,11 @@ constexpr uint32_t kLeastSphere = 12, kLeastDisk = 2;
 }  // namespace
 
 Decimator::Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares,
-                     std::vector<bool> pinned)
+                     std::vector<uint32_t> seeds)
     : mesh_(mesh, sharp),
       shares_(std::move(shares)),
-      pinned_(std::move(pinned)),
-      costs_(mesh_, shares_),
+      seeds_(std::move(seeds)),
+      costs_(mesh_, shares_, seeds_),
       version_(mesh.positions.size(), 0),
       removed_by_(mesh.triangles.size(), kNone),
       faces_(static_cast<uint32_t>(mesh.triangles.size())) {
@@ -91,7 +91,7 @@ void Decimator::run_by(Rules rules, uint32_t faces) {
 }
 
 void Decimator::push(VertexHandle v, Rules rules) {
-    if (mesh_.status(v).deleted() || mesh_.is_isolated(v) || (!pinned_.empty() && pinned_[index(v)])) return;
+    if (mesh_.status(v).deleted() || mesh_.is_isolated(v)) return;
     const CollapseCost::Candidate candidate = costs_.best(v, rules);
     ++version_[index(v)];
     if (candidate.edge.is_valid()) queue_.push({candidate.cost, index(v), version_[index(v)]});
@@ -100,6 +100,14 @@ void Decimator::push(VertexHandle v, Rules rules) {
 void Decimator::push_around(VertexHandle v, Rules rules) {
     push(v, rules);
     for (auto w = mesh_.vv_begin(v); w.is_valid(); ++w) push(*w, rules);
+}
+
+void Decimator::collapse(uint32_t vertex, uint32_t into) {
+    collapse(mesh_.find_halfedge(mesh_.vertex_handle(vertex), mesh_.vertex_handle(into)));
+}
+
+std::optional<double> Decimator::cost_of(HalfedgeHandle h) {
+    return above_floor(h) ? costs_.cost_of(h, Rules::kLooseShape) : std::nullopt;
 }
 
 // A crease goes along only where its vertex moves along it. A corner, or a vertex that leaves its crease, ends it.

@@ -11,17 +11,20 @@ namespace gim {
 
 class Decimator {
   public:
-    // In: an oriented 2-manifold; per half-edge 3f+i whether it is a crease (empty: none); per vertex what it stands for;
-    // per vertex whether it must stay (empty: none must).
+    // In: an oriented 2-manifold; per half-edge 3f+i whether it is a crease (empty: none); per vertex what it stands for.
+    // Seeds per vertex: see CollapseCost.
     Decimator(const Mesh& mesh, const std::vector<bool>& sharp, std::vector<VertexShare> shares,
-              std::vector<bool> pinned = {});
+              std::vector<uint32_t> seeds = {});
     Decimator(const Decimator&) = delete;
     Decimator& operator=(const Decimator&) = delete;
 
     // Collapses until at most `faces` are left, or nothing more can go. O(V log V).
     void run(uint32_t faces);
-    // Collapses h by order, whatever it costs; is_collapse_ok(h) must hold.
+    // Makes one collapse, whatever it costs; it must keep a manifold.
     void collapse(OpenMesh::HalfedgeHandle h);
+    void collapse(uint32_t vertex, uint32_t into);
+    // What a collapse costs that keeps all creases; nothing if it is forbidden.
+    std::optional<double> cost_of(OpenMesh::HalfedgeHandle h);
 
     const std::vector<HalfEdgeCollapse>& collapses() const { return collapses_; }
     // Per face: how many collapses were made before the one that removed it; kNone if it is there.
@@ -47,7 +50,7 @@ class Decimator {
 
     CollapseMesh mesh_;
     std::vector<VertexShare> shares_;
-    std::vector<bool> pinned_;
+    std::vector<uint32_t> seeds_;
     CollapseCost costs_;
     std::vector<uint32_t> version_;
     std::priority_queue<Entry> queue_;

@@ -15,24 +15,33 @@ constexpr double kCreasePenalty = 1000;
 constexpr double kDoubletPenalty = 5;
 constexpr double kValencePenalty = 0.25;  // per squared difference from four quads
 constexpr double kWeightScale = 1e6;
-constexpr int kRounds = 40;
+
+// What all components share.
+struct Whole {
+    const std::vector<Vec3>& positions;
+    const BaseMesh& base;
+    const Topology topology;
+    std::vector<uint32_t> faces_at;  // per vertex
+    std::vector<double> price;       // per vertex: what a diagonal that ends there is worth
+    std::vector<uint32_t> number;    // per triangle: its place in its component
+};
 
 // One component of the base. Triangles are numbered inside of it.
 class Pairing {
   public:
-    Pairing(const std::vector<Vec3>& positions, const BaseMesh& base, const Topology& topology,
-            std::vector<uint32_t> triangles, std::vector<double>& price, const std::vector<uint32_t>& faces_at)
-        : positions_(positions),
-          base_(base),
-          topology_(topology),
-          triangles_(std::move(triangles)),
-          price_(price),
-          faces_at_(faces_at) {
-        find_edges();
+    Pairing(Whole& whole, const std::vector<uint32_t>& triangles)
+        : positions_(whole.positions),
+          base_(whole.base),
+          topology_(whole.topology),
+          faces_at_(whole.faces_at),
+          price_(whole.price),
+          triangles_(triangles) {
+        for (uint32_t i = 0; i < triangles_.size(); ++i) whole.number[triangles_[i]] = i;
+        find_edges(whole.number);
     }
 
     // Per triangle of the component its diagonal, a half-edge of the base; nothing if there is no perfect matching.
-    std::vector<uint32_t> run();
+    std::vector<uint32_t> run(uint32_t rounds);
 
   private:
     struct Edge {
@@ -40,7 +49,7 @@ class Pairing {
         uint32_t a, b;       // triangles
         double shape;
     };
-    void find_edges();
+    void find_edges(const std::vector<uint32_t>& number);
     std::vector<uint32_t> match();
     double judge(const std::vector<uint32_t>& diagonals);
     void adapt_prices(double step);
@@ -50,17 +59,15 @@ class Pairing {
     const std::vector<Vec3>& positions_;
     const BaseMesh& base_;
     const Topology& topology_;
-    std::vector<uint32_t> triangles_;
-    std::vector<double>& price_;             // per vertex: what a diagonal that ends there is worth
-    const std::vector<uint32_t>& faces_at_;  // per vertex
+    const std::vector<uint32_t>& faces_at_;
+    std::vector<double>& price_;
+    const std::vector<uint32_t>& triangles_;
     std::vector<Edge> edges_;
     std::vector<uint32_t> vertices_;
     std::vector<uint32_t> quads_at_;  // per vertex of vertices_
 };
 
-void Pairing::find_edges() {
-    std::vector<uint32_t> number(base_.triangles.size(), kNone);
-    for (uint32_t i = 0; i < triangles_.size(); ++i) number[triangles_[i]] = i;
+void Pairing::find_edges(const std::vector<uint32_t>& number) {
     for (uint32_t i = 0; i < triangles_.size(); ++i) {
         for (uint32_t h = 3 * triangles_[i]; h < 3 * triangles_[i] + 3; ++h) {
             vertices_.push_back(origin(h));
@@ -121,7 +128,7 @@ void Pairing::adapt_prices(double step) {
     }
 }
 
-std::vector<uint32_t> Pairing::run() {
+std::vector<uint32_t> Pairing::run(uint32_t rounds) {
     for (const uint32_t v : vertices_) {
         const double t = faces_at_[v];
         price_[v] = open_at(v) ? 0 : 0.15 * (t - 5) - (t == 3 ? 20 : 0) - (t == 4 ? 0.6 : 0);
@@ -129,7 +136,7 @@ std::vector<uint32_t> Pairing::run() {
     std::vector<uint32_t> best = match();
     if (best.empty()) return best;
     double best_value = judge(best);
-    for (int round = 0; round < kRounds; ++round) {
+    for (uint32_t round = 0; round < rounds; ++round) {
         adapt_prices(0.25 / (1 + 0.2 * round));
         std::vector<uint32_t> diagonals = match();
         const double value = judge(diagonals);
@@ -157,32 +164,52 @@ void add_quads(const BaseMesh& base, const Topology& topology, const std::vector
     }
 }
 
+uint32_t count_twins(std::vector<std::array<uint32_t, 4>> quads) {
+    for (auto& q : quads) std::sort(q.begin(), q.end());
+    std::sort(quads.begin(), quads.end());
+    uint32_t twins = 0;
+    for (size_t i = 1; i < quads.size(); ++i) twins += quads[i] == quads[i - 1];
+    return twins;
+}
+
+void find_doublets(const Whole& whole, QuadPairing& result) {
+    std::vector<uint32_t> quads_at = whole.faces_at;
+    for (const auto& quad : result.quads) --quads_at[quad[0]], --quads_at[quad[2]];
+    for (const uint32_t f : result.unpaired) {
+        for (const uint32_t v : whole.base.triangles[f]) quads_at[v] = kNone;
+    }
+    for (uint32_t v = 0; v < quads_at.size(); ++v) {
+        const uint32_t h = whole.topology.outgoing[v];
+        if (h != kNone && whole.topology.twin[h] != kNone && quads_at[v] == 2) result.doublets.push_back(v);
+    }
+}
+
 }  // namespace
 
-QuadPairing pair_triangles(const std::vector<Vec3>& positions, const BaseMesh& base) {
+QuadPairing pair_triangles(const std::vector<Vec3>& positions, const BaseMesh& base, uint32_t rounds) {
     QuadPairing result;
-    const Topology topology = build_topology({positions, base.triangles});
+    Whole whole{positions,
+                base,
+                build_topology({positions, base.triangles}),
+                std::vector<uint32_t>(positions.size(), 0),
+                std::vector<double>(positions.size(), 0),
+                std::vector<uint32_t>(base.triangles.size(), kNone)};
+    for (const Triangle& t : base.triangles) {
+        for (const uint32_t v : t) ++whole.faces_at[v];
+    }
     const Components components = connected_components(base.triangles, positions.size());
     std::vector<std::vector<uint32_t>> triangles(components.count);
     for (uint32_t f = 0; f < base.triangles.size(); ++f) triangles[components.of_face[f]].push_back(f);
-    std::vector<uint32_t> faces_at(positions.size(), 0);
-    for (const Triangle& t : base.triangles) {
-        for (const uint32_t v : t) ++faces_at[v];
-    }
-    std::vector<double> price(positions.size(), 0);
     for (const std::vector<uint32_t>& part : triangles) {
-        const std::vector<uint32_t> diagonals = Pairing(positions, base, topology, part, price, faces_at).run();
+        const std::vector<uint32_t> diagonals = Pairing(whole, part).run(rounds);
         if (diagonals.empty()) {
             result.unpaired.insert(result.unpaired.end(), part.begin(), part.end());
         } else {
-            add_quads(base, topology, diagonals, result);
+            add_quads(base, whole.topology, diagonals, result);
         }
     }
-    for (const auto& q : result.quads) --faces_at[q[0]], --faces_at[q[2]];
-    for (uint32_t v = 0; v < positions.size(); ++v) {
-        const uint32_t h = topology.outgoing[v];
-        if (h != kNone && topology.twin[h] != kNone && faces_at[v] == 2) result.doublets.push_back(v);
-    }
+    result.twins = count_twins(result.quads);
+    find_doublets(whole, result);
     return result;
 }
 

@@ -1,0 +1,118 @@
+#include "encoder/tiles/part_base.h"
+
+#include <algorithm>
+
+#include "encoder/base/disjoint_sets.h"
+#include "encoder/tiles/base_mesh.h"
+#include "encoder/tiles/even_patches.h"
+
+namespace gim {
+
+namespace {
+
+// Tries in all, and tries until the base may be larger. A large base is tried less often, because that takes longer.
+constexpr uint32_t kMostTries = 120, kFacesTried = 24000, kTriesPerSize = 12;
+// Rounds of pairing that tell whether a base has faults.
+constexpr uint32_t kQuickRounds = 15;
+
+struct Try {
+    PartBase base;
+    BaseMesh mesh;
+    QuadPairing pairing;
+    size_t faults = SIZE_MAX;
+};
+
+class PartTries {
+  public:
+    explicit PartTries(const PartMesh& part) : part_(part), seeds_(part.mesh.positions.size(), 0) {}
+
+    Try first(uint32_t count);
+    // Varies the base around the faults of the one before.
+    Try vary(const Try& before, uint32_t faces, uint32_t seed);
+
+  private:
+    Try judge(Decimator& decimator) const;
+    std::vector<bool> near_faults(const Try& before) const;
+
+    const PartMesh& part_;
+    std::vector<uint32_t> seeds_;  // per vertex of the part
+};
+
+Try PartTries::judge(Decimator& decimator) const {
+    make_patches_even(decimator);
+    Try result{{decimator.collapses(), decimator.removed_by()},
+               base_after(part_.mesh, part_.sharp, decimator.collapses(), decimator.removed_by()),
+               {}};
+    result.pairing = pair_triangles(part_.mesh.positions, result.mesh, kQuickRounds);
+    const QuadPairing& p = result.pairing;
+    result.faults = 1000 * p.unpaired.size() + p.crossed.size() + p.doublets.size() + p.twins;
+    return result;
+}
+
+Try PartTries::first(uint32_t count) {
+    Decimator decimator(part_.mesh, part_.sharp, part_.shares);
+    for (uint32_t i = 0; i < count; ++i) decimator.collapse(part_.collapses[i].vertex, part_.collapses[i].into);
+    return judge(decimator);
+}
+
+// The vertices of patches that could not be paired, and those around doublets.
+std::vector<bool> PartTries::near_faults(const Try& before) const {
+    std::vector<bool> near(part_.mesh.positions.size(), false);
+    const std::vector<Triangle>& triangles = before.mesh.triangles;
+    const Topology topology = build_topology({part_.mesh.positions, triangles});
+    DisjointSets patches(triangles.size());
+    std::vector<uint32_t> faulty = before.pairing.unpaired;
+    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+        const uint32_t t = topology.twin[h], a = triangles[h / 3][h % 3], b = triangles[h / 3][(h % 3 + 1) % 3];
+        const std::array<uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
+        if (t == kNone) continue;
+        if (!std::binary_search(before.mesh.creases.begin(), before.mesh.creases.end(), edge))
+            patches.unite(h / 3, t / 3);
+        const auto& crossed = before.pairing.crossed;
+        if (std::find(crossed.begin(), crossed.end(), edge) != crossed.end()) faulty.push_back(h / 3);
+    }
+    std::vector<bool> faulty_patch(triangles.size(), false), doublet(near.size(), false);
+    for (const uint32_t f : faulty) faulty_patch[patches.find(f)] = true;
+    for (const uint32_t v : before.pairing.doublets) doublet[v] = true;
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+        const Triangle& t = triangles[f];
+        if (!faulty_patch[patches.find(f)] && !doublet[t[0]] && !doublet[t[1]] && !doublet[t[2]]) continue;
+        for (const uint32_t v : t) near[v] = true;
+    }
+    // Vertices that moved there vary too.
+    for (size_t i = before.base.collapses.size(); i-- > 0;) {
+        const HalfEdgeCollapse& c = before.base.collapses[i];
+        if (near[c.into]) near[c.vertex] = true;
+    }
+    return near;
+}
+
+Try PartTries::vary(const Try& before, uint32_t faces, uint32_t seed) {
+    const std::vector<bool> near = near_faults(before);
+    const std::vector<uint32_t> old = seeds_;
+    for (size_t v = 0; v < near.size(); ++v) {
+        if (near[v]) seeds_[v] = seed;
+    }
+    Decimator decimator(part_.mesh, part_.sharp, part_.shares, seeds_);
+    decimator.run(faces);
+    Try result = judge(decimator);
+    if (result.faults > before.faults) seeds_ = old;
+    return result;
+}
+
+}  // namespace
+
+PartBase choose_part_base(const PartMesh& part, uint32_t count) {
+    PartTries tries(part);
+    Try best = tries.first(count);
+    const auto faces = static_cast<uint32_t>(part.mesh.triangles.size());
+    const auto wanted = static_cast<uint32_t>(best.mesh.triangles.size());
+    const uint32_t most = std::clamp(kFacesTried / faces, 4u, kMostTries);
+    for (uint32_t i = 1; i <= most && best.faults > 0; ++i) {
+        Try now = tries.vary(best, wanted + 2 * (i / kTriesPerSize), i);
+        if (now.faults <= best.faults) best = std::move(now);
+    }
+    return std::move(best.base);
+}
+
+}  // namespace gim
