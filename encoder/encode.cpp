@@ -43,10 +43,14 @@ struct Prepared {
 Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, EncodeOptions options, StageClock& clock,
                           const Observer& observer) {
     options.layout = layout.layout;
+    const bool drops_colors = layout.layout == Layout::kTiles && !options.color_side;
+    if (drops_colors) options.color_side = 0;
     CutPreferences cuts;  // chosen at the first side, then kept
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
                                          const Observer& shown) -> Result<Encoded> {
         EncodeReport report = prepared.report;
+        if (drops_colors && !prepared.input.appearance.empty())
+            report.warnings.push_back("tiles hold no colours; those of the input are left out");
         const bool may_grow = now.side == options.side;  // smaller sides are trials
         GIM_TRY(images, layout.make({prepared.mesh, now, clock, shown, report, cuts, may_grow}));
         return code_to_file(*images, {prepared.mesh, prepared.input, prepared.frame}, now, contest, clock,

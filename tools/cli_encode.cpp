@@ -51,9 +51,10 @@ struct EncodeArguments {
 void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
-    sub->add_option("--layout", a.command.options.layout,
-                    "gim: one square for each component; mcgim: several charts in one rectangle; tiles: square tiles on a "
-                    "base mesh of quads; auto: the encoder chooses gim or mcgim")
+    sub->add_option(
+           "--layout", a.command.options.layout,
+           "gim: one square for each component; mcgim: several charts in one rectangle; tiles: square tiles on a "
+           "base mesh of quads; auto: the encoder chooses gim or mcgim")
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
