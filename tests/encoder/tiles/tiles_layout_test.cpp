@@ -15,7 +15,7 @@ EncodeOptions tiles(uint32_t count, RateTarget rate) {
     EncodeOptions options;
     options.layout = Layout::kTiles;
     options.tiles = count;
-    options.samples = 12000;
+    options.samples = 20000;
     options.rate = rate;
     return options;
 }
@@ -24,7 +24,7 @@ const RateTarget kLossless = {RateTarget::Kind::kLossless, 0};
 
 TEST(TilesLayout, EverySurfaceComesBackWithItsTopologyAtEveryLevel) {
     for (const corpus::CorpusEntry& entry : corpus::corpus().valid()) {
-        const auto encoded = encode(entry.mesh(), tiles(24, kLossless));
+        const auto encoded = encode(entry.mesh(), tiles(60, kLossless));
         ASSERT_TRUE(encoded.ok()) << entry.name << ": " << encoded.error().message;
         EXPECT_EQ(encoded.value().report.layout, Layout::kTiles);
         EXPECT_GT(encoded.value().report.error.psnr, 45) << entry.name;
