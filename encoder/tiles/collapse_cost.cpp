@@ -14,7 +14,7 @@ using OpenMesh::VertexHandle;
 namespace {
 
 // Weight of the moved area times the squared distance, against the quadric error. Larger values lose the tips of limbs.
-constexpr double kLengthWeight = 1e-5;
+constexpr double kLengthWeight = 1e-3;
 // Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 // Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
 // near its root, so the quadric does not notice that its tip vanishes.
@@ -283,6 +283,13 @@ std::optional<double> CollapseCost::cost_of(HalfedgeHandle h, Rules rules) {
     gather(mesh_.from_vertex_handle(h));
     const auto onto = std::find(outgoing_.begin(), outgoing_.end(), h);
     return cost(static_cast<size_t>(onto - outgoing_.begin()), rules, HUGE_VAL);
+}
+
+double CollapseCost::damage(HalfedgeHandle h) {
+    gather(mesh_.from_vertex_handle(h));
+    const auto onto = static_cast<size_t>(std::find(outgoing_.begin(), outgoing_.end(), h) - outgoing_.begin());
+    const VertexShare& mine = shares_[index(centre_)];
+    return std::max(0.0, mine.planes(spokes_[onto].at)) + kTipWeight * mine.area * squared_gap(onto);
 }
 
 double CollapseCost::fan_angle(HalfedgeHandle h) {

@@ -53,6 +53,9 @@ class CollapseCost {
     // What one collapse costs; nothing if it is forbidden. O(valence).
     std::optional<double> cost_of(OpenMesh::HalfedgeHandle h, Rules rules);
 
+    // How far the surface moves, as area times squared distance: a part of the cost.
+    double damage(OpenMesh::HalfedgeHandle h);
+
     // The angle at into of the faces that the collapse leaves in place of vertex's, in radians.
     double fan_angle(OpenMesh::HalfedgeHandle h);
 

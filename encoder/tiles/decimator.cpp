@@ -134,6 +134,7 @@ void Decimator::collapse(HalfedgeHandle h) {
         --component_faces_[component_[index(vertex)]];
     }
     collapses_.push_back({index(vertex), index(into), corner(h), corner(back)});
+    damage_ += costs_.damage(h);
     drop_creases(h);
     mesh_.collapse_keeping_creases(h);
     shares_[index(into)] += shares_[index(vertex)];

@@ -31,6 +31,8 @@ class Decimator {
     const std::vector<uint32_t>& removed_by() const { return removed_by_; }
     const CollapseMesh& mesh() const { return mesh_; }
     uint32_t face_count() const { return faces_; }
+    // What all collapses did to the surface; see CollapseCost.
+    double damage() const { return damage_; }
     // Number of collapses that were made by these rules or stricter ones.
     uint32_t made_by(Rules rules) const { return made_by_[static_cast<size_t>(rules)]; }
 
@@ -58,6 +60,7 @@ class Decimator {
     std::vector<uint32_t> removed_by_;
     std::array<uint32_t, 3> made_by_{};
     uint32_t faces_;
+    double damage_ = 0;
     // Per vertex its component; per component its faces, and how few it may have.
     std::vector<uint32_t> component_, component_faces_, floor_;
 };

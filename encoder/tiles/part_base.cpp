@@ -21,6 +21,9 @@ struct Try {
     BaseMesh mesh;
     QuadPairing pairing;
     size_t faults = SIZE_MAX;
+    double damage = 0;
+
+    bool better_than(const Try& o) const { return faults != o.faults ? faults < o.faults : damage < o.damage; }
 };
 
 class PartTries {
@@ -55,6 +58,7 @@ Try PartTries::judge(Decimator& decimator) const {
     result.pairing = pair_triangles(part_.mesh.positions, result.mesh, kQuickRounds);
     const QuadPairing& p = result.pairing;
     result.faults = 1000 * p.unpaired.size() + p.crossed.size() + p.doublets.size() + p.twins;
+    result.damage = decimator.damage();
     return result;
 }
 
@@ -112,12 +116,12 @@ Try PartTries::vary(const Try& before, uint32_t faces, uint32_t seed) {
     const std::vector<uint32_t> old = seeds_;
     for (size_t v = 0; v < near.size(); ++v) {
         // If only smooth vertices vary, patches stay even.
-        if (near[v] && (seed % 3 == 0 || smooth_[v])) seeds_[v] = seed;
+        if (near[v] && (seed % 2 == 0 || smooth_[v])) seeds_[v] = seed;
     }
     Decimator decimator(part_.mesh, part_.sharp, part_.shares, seeds_);
     decimator.run(faces);
     Try result = judge(decimator);
-    if (result.faults > before.faults) seeds_ = old;
+    if (!result.better_than(before)) seeds_ = old;
     return result;
 }
 
@@ -133,7 +137,7 @@ PartBase choose_part_base(const PartMesh& part, uint32_t count) {
     const uint32_t most = std::clamp(kFacesTried / faces, 4u, kMostTries);
     for (uint32_t i = 1; i <= most && best.faults > 0; ++i) {
         Try now = tries.vary(best, wanted + 2 * (i / kTriesPerSize), i);
-        if (now.faults <= best.faults) best = std::move(now);
+        if (now.better_than(best)) best = std::move(now);
     }
     return std::move(best.base);
 }
