@@ -5,6 +5,7 @@
 #include "encoder/base/disjoint_sets.h"
 #include "encoder/tiles/base_mesh.h"
 #include "encoder/tiles/even_patches.h"
+#include "encoder/tiles/perfect_matching.h"
 
 namespace gim {
 
@@ -24,7 +25,14 @@ struct Try {
 
 class PartTries {
   public:
-    explicit PartTries(const PartMesh& part) : part_(part), seeds_(part.mesh.positions.size(), 0) {}
+    explicit PartTries(const PartMesh& part)
+        : part_(part), seeds_(part.mesh.positions.size(), 0), smooth_(part.mesh.positions.size(), true) {
+        const Topology topology = build_topology(part.mesh);
+        for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+            if (topology.twin[h] == kNone || part.sharp[h])
+                smooth_[from(part.mesh, h)] = smooth_[to(part.mesh, h)] = false;
+        }
+    }
 
     Try first(uint32_t count);
     // Varies the base around the faults of the one before.
@@ -36,6 +44,7 @@ class PartTries {
 
     const PartMesh& part_;
     std::vector<uint32_t> seeds_;  // per vertex of the part
+    std::vector<bool> smooth_;     // per vertex: no crease or boundary ends there
 };
 
 Try PartTries::judge(Decimator& decimator) const {
@@ -55,28 +64,39 @@ Try PartTries::first(uint32_t count) {
     return judge(decimator);
 }
 
-// The vertices of patches that could not be paired, and those around doublets.
-std::vector<bool> PartTries::near_faults(const Try& before) const {
-    std::vector<bool> near(part_.mesh.positions.size(), false);
-    const std::vector<Triangle>& triangles = before.mesh.triangles;
-    const Topology topology = build_topology({part_.mesh.positions, triangles});
+// Per triangle its patch, and whether that cannot be paired by itself.
+std::vector<bool> unpairable_triangles(const std::vector<Vec3>& positions, const BaseMesh& base) {
+    const std::vector<Triangle>& triangles = base.triangles;
+    const Topology topology = build_topology({positions, triangles});
     DisjointSets patches(triangles.size());
-    std::vector<uint32_t> faulty = before.pairing.unpaired;
+    std::vector<WeightedEdge> inner;
     for (uint32_t h = 0; h < topology.twin.size(); ++h) {
         const uint32_t t = topology.twin[h], a = triangles[h / 3][h % 3], b = triangles[h / 3][(h % 3 + 1) % 3];
         const std::array<uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
-        if (t == kNone) continue;
-        if (!std::binary_search(before.mesh.creases.begin(), before.mesh.creases.end(), edge))
-            patches.unite(h / 3, t / 3);
-        const auto& crossed = before.pairing.crossed;
-        if (std::find(crossed.begin(), crossed.end(), edge) != crossed.end()) faulty.push_back(h / 3);
+        if (t == kNone || t < h || std::binary_search(base.creases.begin(), base.creases.end(), edge)) continue;
+        patches.unite(h / 3, t / 3);
+        inner.push_back({h / 3, t / 3, 0});
     }
-    std::vector<bool> faulty_patch(triangles.size(), false), doublet(near.size(), false);
-    for (const uint32_t f : faulty) faulty_patch[patches.find(f)] = true;
-    for (const uint32_t v : before.pairing.doublets) doublet[v] = true;
+    std::vector<std::vector<WeightedEdge>> edges(triangles.size());
+    std::vector<uint32_t> place(triangles.size()), sizes(triangles.size(), 0);
+    for (uint32_t f = 0; f < triangles.size(); ++f) place[f] = sizes[patches.find(f)]++;
+    for (const WeightedEdge& e : inner) edges[patches.find(e.a)].push_back({place[e.a], place[e.b], 0});
+    std::vector<bool> unpairable(triangles.size(), false);
     for (uint32_t f = 0; f < triangles.size(); ++f) {
-        const Triangle& t = triangles[f];
-        if (!faulty_patch[patches.find(f)] && !doublet[t[0]] && !doublet[t[1]] && !doublet[t[2]]) continue;
+        const uint32_t patch = patches.find(f);
+        unpairable[f] = patch < f ? unpairable[patch] : perfect_matching(sizes[f], edges[f]).empty();
+    }
+    return unpairable;
+}
+
+// The vertices of patches that cannot be paired, and those around doublets.
+std::vector<bool> PartTries::near_faults(const Try& before) const {
+    std::vector<bool> near(part_.mesh.positions.size(), false), doublet(near.size(), false);
+    const std::vector<bool> unpairable = unpairable_triangles(part_.mesh.positions, before.mesh);
+    for (const uint32_t v : before.pairing.doublets) doublet[v] = true;
+    for (uint32_t f = 0; f < unpairable.size(); ++f) {
+        const Triangle& t = before.mesh.triangles[f];
+        if (!unpairable[f] && !doublet[t[0]] && !doublet[t[1]] && !doublet[t[2]]) continue;
         for (const uint32_t v : t) near[v] = true;
     }
     // Vertices that moved there vary too.
@@ -91,7 +111,8 @@ Try PartTries::vary(const Try& before, uint32_t faces, uint32_t seed) {
     const std::vector<bool> near = near_faults(before);
     const std::vector<uint32_t> old = seeds_;
     for (size_t v = 0; v < near.size(); ++v) {
-        if (near[v]) seeds_[v] = seed;
+        // If only smooth vertices vary, patches stay even.
+        if (near[v] && (seed % 3 == 0 || smooth_[v])) seeds_[v] = seed;
     }
     Decimator decimator(part_.mesh, part_.sharp, part_.shares, seeds_);
     decimator.run(faces);
@@ -106,7 +127,9 @@ PartBase choose_part_base(const PartMesh& part, uint32_t count) {
     PartTries tries(part);
     Try best = tries.first(count);
     const auto faces = static_cast<uint32_t>(part.mesh.triangles.size());
-    const auto wanted = static_cast<uint32_t>(best.mesh.triangles.size());
+    uint32_t wanted = faces;
+    for (uint32_t i = 0; i < count; ++i)
+        wanted -= (part.collapses[i].left != kNone) + (part.collapses[i].right != kNone);
     const uint32_t most = std::clamp(kFacesTried / faces, 4u, kMostTries);
     for (uint32_t i = 1; i <= most && best.faults > 0; ++i) {
         Try now = tries.vary(best, wanted + 2 * (i / kTriesPerSize), i);

@@ -135,7 +135,8 @@ PartMesh FineCut::part(uint32_t component) const {
     const std::vector<uint32_t>& list = lists_[component];
     for (size_t i = fine_[component]; i < wanted_[component]; ++i) {
         const HalfEdgeCollapse& c = hierarchy_.collapses()[list[i]];
-        part.collapses.push_back({number_[c.vertex], number_[c.into], kNone, kNone});
+        const auto number = [&](uint32_t v) { return v == kNone ? kNone : number_[v]; };
+        part.collapses.push_back({number(c.vertex), number(c.into), number(c.left), number(c.right)});
     }
     return part;
 }
