@@ -4,6 +4,7 @@
 #include <string>
 
 #include "format/chart_table.h"
+#include "format/quad_complex.h"
 
 namespace gim {
 
@@ -49,9 +50,12 @@ Result<void> check_options(const EncodeOptions& options) {
         case RateTarget::Kind::kLossless:
             break;
     }
-    if (options.layout == Layout::kTiles) return wrong("the layout tiles is not there yet; take gim, mcgim or auto");
     if (options.samples < kLeastSamples || options.samples > kMostSamples)
         return wrong("the samples must be from 1000 to 67108864; not " + std::to_string(options.samples));
+    if (options.tiles > kMostTiles)
+        return wrong("at most " + std::to_string(kMostTiles) + " tiles; not " + std::to_string(options.tiles));
+    if (options.layout == Layout::kTiles && (options.normal_side > 0 || options.color_side.value_or(0) > 0))
+        return wrong("tiles hold no normals and no colours; leave them out, or take --layout gim");
     if (options.charts > kMaxCharts)
         return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));
     return {};

@@ -9,8 +9,7 @@ Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock&
     const LayoutEntry* best = nullptr;
     double most = 0;
     for (const LayoutEntry& entry : all_layouts()) {
-        const bool is_last = &entry == &all_layouts().back();
-        if (!is_lossless && is_last) return entry.layout;  // nothing else can take the mesh
+        if (entry.efficiency == nullptr) continue;
         const double efficiency = entry.efficiency(mesh, options, clock);
         if (!is_lossless && efficiency > 0) return entry.layout;
         if (best != nullptr && efficiency <= most) continue;

@@ -17,6 +17,7 @@
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/local_frame.h"
+#include "encoder/tiles/best_tiles.h"
 #include "encoder/within_budget.h"
 
 namespace gim {
@@ -42,10 +43,14 @@ struct Prepared {
 Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, EncodeOptions options, StageClock& clock,
                           const Observer& observer) {
     options.layout = layout.layout;
+    const bool drops_colors = layout.layout == Layout::kTiles && !options.color_side;
+    if (drops_colors) options.color_side = 0;
     CutPreferences cuts;  // chosen at the first side, then kept
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
                                          const Observer& shown) -> Result<Encoded> {
         EncodeReport report = prepared.report;
+        if (drops_colors && !prepared.input.appearance.empty())
+            report.warnings.push_back("tiles hold no colours; those of the input are left out");
         const bool may_grow = now.side == options.side;  // smaller sides are trials
         GIM_TRY(images, layout.make({prepared.mesh, now, clock, shown, report, cuts, may_grow}));
         return code_to_file(*images, {prepared.mesh, prepared.input, prepared.frame}, now, contest, clock,
@@ -54,7 +59,9 @@ Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, E
     return within_budget(options, [&](const EncodeOptions& now) {
         cuts = {};
         const bool is_first = now.rate.value == options.rate.value;
-        return best_of_sides(make_and_code, now, clock, is_first ? observer : Observer());
+        const Observer shown = is_first ? observer : Observer();
+        return layout.layout == Layout::kTiles ? best_of_tiles(make_and_code, now, clock, shown)
+                                               : best_of_sides(make_and_code, now, clock, shown);
     });
 }
 
@@ -99,7 +106,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     if (options.layout == Layout::kAuto) return encode_as_any(prepared, options, clock, local_observer);
     const LayoutEntry* layout = find_layout(options.layout);
     if (layout == nullptr)
-        return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim or auto"};
+        return Error{Stage::kInput, "the encoder does not know this layout; take gim, mcgim, tiles or auto"};
     return encode_as(*layout, prepared, options, clock, local_observer);
 }
 

@@ -10,6 +10,8 @@
 #include "encoder/charts/multi_chart.h"
 #include "encoder/check_options.h"
 #include "encoder/squares/squares_layout.h"
+#include "encoder/tiles/make_tiles.h"
+#include "encoder/tiles/tiles_layout.h"
 
 namespace gim {
 
@@ -27,6 +29,13 @@ Made charts_of(const MakeImages& in) {
     const uint32_t most_samples = in.may_grow ? kMostSamples : in.options.samples;
     GIM_TRY(charts, make_charts(in.mesh, in.options, most_samples, in.clock, in.observer, in.report));
     return charts_layout(std::move(charts), in.mesh, in.options);
+}
+
+Made tiles_of(const MakeImages& in) {
+    GIM_TRY(tiles, make_tiles(in.mesh, in.options, in.clock, in.observer));
+    in.report.stretch_efficiency = tiles.stretch_efficiency;
+    in.report.folds_before_fit = tiles.folds_before_fit;
+    return tiles_layout(std::move(tiles), in.mesh, in.options);
 }
 
 double efficiency_of_squares(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
@@ -51,8 +60,9 @@ double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, Stag
     return charts.ok() ? charts.value().stretch_efficiency * charts.value().packing_efficiency : 0;
 }
 
-constexpr std::array<LayoutEntry, 2> kLayouts = {
-    {{Layout::kGim, squares_of, efficiency_of_squares}, {Layout::kMcgim, charts_of, efficiency_of_charts}}};
+constexpr std::array<LayoutEntry, 3> kLayouts = {{{Layout::kGim, squares_of, efficiency_of_squares},
+                                                  {Layout::kMcgim, charts_of, efficiency_of_charts},
+                                                  {Layout::kTiles, tiles_of, nullptr}}};
 
 }  // namespace
 

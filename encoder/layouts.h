@@ -27,7 +27,7 @@ struct LayoutEntry {
     Layout layout;
     // Runs all stages from the clean mesh to images that are ready to be coded.
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
-    // Returns effective samples per sample; 0 if the layout cannot take the mesh. For --layout auto.
+    // Returns effective samples per sample; 0 if the layout cannot take the mesh. For --layout auto; null: not asked.
     double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
 };
 

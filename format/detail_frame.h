@@ -140,6 +140,15 @@ void make_frames(DetailLanes<N>& all, size_t count, float cell_area) {
     }
 }
 
+// The frame of a single lane.
+inline DetailFrame frame_of(const DetailLanes<1>& one) {
+    DetailFrame frame;
+    for (int a = 0; a < 3; ++a)
+        for (int k = 0; k < 3; ++k) frame.axis[a][k] = one.axis[a][k][0];
+    frame.scale = one.scale[0];
+    return frame;
+}
+
 // The small image that details are added to: rows * columns triples in units.
 class FrameField {
   public:
@@ -155,11 +164,7 @@ class FrameField {
         DetailLanes<1> one;
         find_tangents(orientation, row, &column, 1, one);
         make_frames(one, 1);
-        DetailFrame frame;
-        for (int a = 0; a < 3; ++a)
-            for (int k = 0; k < 3; ++k) frame.axis[a][k] = one.axis[a][k][0];
-        frame.scale = one.scale[0];
-        return frame;
+        return frame_of(one);
     }
 
     // Does the same for many details in two steps. find_tangents fills lanes from `first` on with the tangents at some

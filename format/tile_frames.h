@@ -17,6 +17,14 @@ class TileFrames {
     TileFrames(const QuadComplex& complex, const TilePlanes& planes, const float* samples)
         : complex_(complex), planes_(planes), samples_(samples) {}
 
+    // The frame of a detail.
+    DetailFrame at(uint32_t tile, Orientation orientation, uint32_t row, uint32_t column, float cell_area) const {
+        DetailLanes<1> one;
+        find_tangents(tile, orientation, row, column, one, 0);
+        make_frames(one, 1, cell_area);
+        return frame_of(one);
+    }
+
     // Sets the tangents of a detail as lane i. A detail on the border of the tile must be that of the lower half-edge.
     template <size_t N>
     void find_tangents(uint32_t tile, Orientation orientation, uint32_t row, uint32_t column, DetailLanes<N>& lanes,

@@ -51,9 +51,10 @@ struct EncodeArguments {
 void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
-    sub->add_option("--layout", a.command.options.layout,
-                    "gim: one square for each component; mcgim: several charts in one rectangle; tiles: a base mesh of "
-                    "quads, not available yet; auto: the encoder chooses gim or mcgim")
+    sub->add_option(
+           "--layout", a.command.options.layout,
+           "gim: one square for each component; mcgim: several charts in one rectangle; tiles: square tiles on a "
+           "base mesh of quads; auto: the encoder chooses gim or mcgim")
         ->transform(CLI::CheckedTransformer(layouts).description(""))
         ->type_name("gim|mcgim|tiles|auto")
         ->default_str("gim");
@@ -70,12 +71,17 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
         ->check(side_validator(5, 4097))
         ->capture_default_str();
     sub->add_option("--samples", a.command.options.samples,
-                    "mcgim: most samples of the image, width * height. Charts that do not fit get more, with a warning")
+                    "mcgim, tiles: most samples of the image, width * height. Charts that do not fit get more, with a "
+                    "warning")
         ->check(CLI::Range(1000, 1 << 26))
         ->capture_default_str();
     sub->add_option("--charts", a.command.options.charts,
                     "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
         ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    sub->add_option("--tiles", a.command.options.tiles,
+                    "tiles: number of tiles. The encoder makes more if the surface needs them. 0: the encoder decides")
+        ->check(CLI::Range(0, 65536))
         ->capture_default_str();
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
         ->check(CLI::Range(8, 20))

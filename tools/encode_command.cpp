@@ -91,6 +91,10 @@ std::string summary(const EncodeCommand& command, const EncodeReport& report) {
         print_line(format_line("charts", std::to_string(report.charts) + ", " +
                                              fixed(100 * report.packing_efficiency, 1) + " % of the samples defined"));
     }
+    if (report.tiles > 0) {
+        const std::string side = std::to_string(report.side);
+        print_line(format_line("tiles", with_thousands(report.tiles) + " of " + side + " x " + side));
+    }
     print_line(format_line("bytes", with_thousands(report.file_bytes)));
     for (const PlaneReport& plane : report.planes) {
         const bool is_color = plane.kind == PlaneReport::Kind::kColors;

@@ -110,6 +110,12 @@ void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const Local
     }
 }
 
+// Whether a face has another colour than white.
+bool has_tint(const std::vector<std::array<float, 3>>& colors) {
+    constexpr std::array<float, 3> kWhite = {1, 1, 1};
+    return std::any_of(colors.begin(), colors.end(), [&](const auto& c) { return c != kNoColor && c != kWhite; });
+}
+
 }  // namespace
 
 void scale_colors(std::vector<std::array<float, 3>>& colors) {
@@ -158,6 +164,8 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
         soup.corner_texcoords.clear();
     }
     const bool is_colored = !soup.face_texture.empty() || !soup.vertex_colors.empty() || !soup.face_colors.empty();
+    if (!soup.vertex_colors.empty() && has_tint(soup.face_colors))
+        context.warnings.push_back("both its vertices and its faces have colours; those of the vertices are used");
     std::vector<uint32_t> face;
     std::vector<LocalTriangle> pieces;
     size_t first = 0, dropped = 0;

@@ -171,7 +171,6 @@ class Reader {
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
         if (soup_.vertex_colors.size() != soup_.positions.size()) soup_.vertex_colors.clear();
         if (soup_.face_colors.size() != soup_.sizes.size()) soup_.face_colors.clear();
-        if (!soup_.vertex_colors.empty()) soup_.face_colors.clear();  // those of vertices are finer
         scale_channels(soup_.vertex_colors, vertex_color_type_);
         scale_channels(soup_.face_colors, face_color_type_);
         return triangulate(std::move(soup_), context);

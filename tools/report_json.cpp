@@ -70,6 +70,23 @@ ordered_json to_json(const Repairs& repairs) {
             {"inside_out", repairs.inside_out}};
 }
 
+namespace {
+
+const char* name_of(Layout layout) {
+    switch (layout) {
+        case Layout::kMcgim:
+            return "mcgim";
+        case Layout::kTiles:
+            return "tiles";
+        case Layout::kGim:
+        case Layout::kAuto:
+            break;
+    }
+    return "gim";
+}
+
+}  // namespace
+
 ordered_json to_json(const EncodeReport& report) {
     ordered_json planes = ordered_json::array();
     for (const PlaneReport& plane : report.planes) {
@@ -99,12 +116,13 @@ ordered_json to_json(const EncodeReport& report) {
             {"repairs", to_json(report.repairs)},
             {"warnings", report.warnings},
             {"topology", to_json(report.topology)},
-            {"layout", report.layout == Layout::kMcgim ? "mcgim" : "gim"},
+            {"layout", name_of(report.layout)},
             {"images", report.images},
             {"width", report.width},
             {"height", report.height},
             {"samples", report.samples},
             {"charts", report.charts},
+            {"tiles", report.tiles},
             {"defined_samples", report.defined_samples},
             {"packing_efficiency", report.packing_efficiency},
             {"side", report.side},

@@ -6,9 +6,9 @@ readonly GIM_ROOT
 
 readonly GIM_BUILD_PACKAGES=(
     g++ cmake ninja-build pkg-config
-    libeigen3-dev libtbb-dev libzstd-dev
+    libeigen3-dev libopenmesh-dev liblemon-dev libtbb-dev libzstd-dev
     libcli11-dev nlohmann-json3-dev libopenexr-dev libdraco-dev libmeshoptimizer-dev libstb-dev
-    libgtest-dev libopenmesh-dev
+    libgtest-dev
 )
 
 say() { printf '\n== %s\n' "$*"; }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/charts/even_axes.h"
 #include "encoder/charts/multi_chart.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/snapshot.h"
@@ -18,7 +19,9 @@ namespace {
 // The most levels to ask for. Charts have too few samples long before.
 constexpr uint32_t kMostLevels = 8;
 
-constexpr int kMostDoublings = 5;  // of the samples, until the charts fit
+constexpr int kMostDoublings = 5;         // of the samples, until the charts fit
+constexpr uint32_t kPackingsIfGrown = 4;  // the bound on samples is exceeded anyway, so the next size is near
+constexpr double kLeastEccentricity = 3;  // of surfaces that even axes may help
 
 // Shows the packed charts, and the surface cut open between them.
 Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& packing) {
@@ -40,8 +43,7 @@ Snapshot show_packing(std::string caption, const Atlas& atlas, const Packing& pa
     return make_snapshot("charts", std::move(caption), opened, std::move(cut), uv);
 }
 
-Result<ChartLevels> charts_within(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                                  const Observer& observer, EncodeReport& report) {
+MultiChartOptions chart_options_of(const EncodeOptions& options) {
     MultiChartOptions chart_options;
     chart_options.charts = options.charts;
     chart_options.samples = options.samples;
@@ -49,6 +51,11 @@ Result<ChartLevels> charts_within(const Mesh& mesh, const EncodeOptions& options
     chart_options.fit = fit_strength(options);
     chart_options.seed = options.seed;
     chart_options.threads = options.threads;
+    return chart_options;
+}
+
+Result<ChartLevels> charts_within(const Mesh& mesh, const MultiChartOptions& chart_options, StageClock& clock,
+                                  const Observer& observer, EncodeReport& report) {
     GIM_TRY(multi_chart, make_multi_chart_image(mesh, chart_options, clock));
     report.stretch_efficiency = multi_chart.stretch_efficiency;
     report.folds_before_fit = multi_chart.before_fit.folds;
@@ -66,22 +73,30 @@ Result<ChartLevels> charts_within(const Mesh& mesh, const EncodeOptions& options
     }
     clock.begin(Stage::kSample);
     return make_chart_levels(multi_chart.image, multi_chart.atlas, multi_chart.packing, multi_chart.topology,
-                             kMostLevels, options.threads);
+                             kMostLevels, chart_options.threads);
 }
+
+bool lacks_samples(const Result<ChartLevels>& charts) { return !charts.ok() && charts.error().stage == Stage::kSample; }
 
 }  // namespace
 
 Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
-    EncodeOptions options = asked;
+    MultiChartOptions options = chart_options_of(asked);
+    const bool may_even = even_axes(mesh).eccentricity > kLeastEccentricity;
     for (int doublings = 0;; ++doublings, options.samples *= 2) {
+        options.even_axes = false;
         auto charts = charts_within(mesh, options, clock, observer, report);
+        options.most_packings = kPackingsIfGrown;
+        if (lacks_samples(charts) && may_even) {
+            options.even_axes = true;
+            charts = charts_within(mesh, options, clock, observer, report);
+        }
         if (charts.ok() && doublings > 0) {
             report.warnings.push_back("the charts do not fit " + std::to_string(asked.samples) +
                                       " samples; the image has up to " + std::to_string(options.samples));
         }
-        const bool lacks_samples = !charts.ok() && charts.error().stage == Stage::kSample;
-        if (!lacks_samples || doublings == kMostDoublings || options.samples > most_samples / 2) return charts;
+        if (!lacks_samples(charts) || doublings == kMostDoublings || options.samples > most_samples / 2) return charts;
     }
 }
 

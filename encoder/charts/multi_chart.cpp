@@ -9,6 +9,7 @@
 #include "encoder/charts/atlas.h"
 #include "encoder/charts/chart_sample.h"
 #include "encoder/charts/chart_slits.h"
+#include "encoder/charts/even_axes.h"
 #include "encoder/charts/inflate.h"
 #include "encoder/charts/pack.h"
 #include "encoder/charts/zipper.h"
@@ -27,7 +28,6 @@ constexpr double kUsualPacking = 0.8;
 
 constexpr int kMostSlitRounds = 4;
 constexpr uint32_t kMostBridgeRounds = 2;  // each packs again
-constexpr uint32_t kMostPackings = 10;
 
 std::vector<PackShape> shapes_of(const Atlas& atlas) {
     std::vector<PackShape> shapes;
@@ -126,7 +126,7 @@ Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh ch
         clock.begin(Stage::kSample);
         GIM_TRY(packing, pack(shapes_of(charted.atlas), pack_options, clock.progress()));
         if (!packing.broken.empty()) {
-            if (result.packings == kMostPackings)
+            if (result.packings >= options.most_packings)
                 return Error{Stage::kSample, "charts have inlets narrower than a sample; ask for more samples"};
             clock.begin(Stage::kParametrize);
             GIM_CHECK(charted.split(packing.broken, clock.progress()));
@@ -135,7 +135,7 @@ Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh ch
         std::vector<ChartMap> maps = charted.atlas.maps;  // the next attempt begins with the maps as they are now
         auto image = sample_and_zip(charted, options.threads, maps, packing);
         if (!image.ok()) {
-            if (result.packings == kMostPackings) return image.error();
+            if (result.packings >= options.most_packings) return image.error();
             ++pack_options.seed;
             continue;
         }
@@ -156,6 +156,25 @@ Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh ch
         result.packing = std::move(packing);
         return result;
     }
+}
+
+Result<MultiChart> charts_of(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
+    GIM_TRY(charted, cut_into_charts(mesh, options, clock));
+    if (options.density) {
+        GIM_CHECK(adapt_density(options.samples, charted, clock));
+    }
+    GIM_CHECK(split_at_slits(options.samples, charted, clock));
+    return pack_and_zip(options, std::move(charted), clock);
+}
+
+Result<MultiChart> charts_on_even_axes(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
+    const EvenAxes axes = even_axes(mesh);
+    Mesh mapped = mesh;
+    map_positions(axes.into, mapped.positions);
+    GIM_TRY(result, charts_of(mapped, options, clock));
+    map_positions(axes.back, result.image.positions);
+    for (Chart& chart : result.atlas.charts) map_positions(axes.back, chart.mesh.positions);
+    return result;
 }
 
 Result<void> fit_samples(const Mesh& mesh, const MultiChartOptions& options, MultiChart& result, StageClock& clock) {
@@ -187,12 +206,7 @@ uint32_t automatic_charts(const Mesh& mesh, uint32_t samples) {
 }
 
 Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
-    GIM_TRY(charted, cut_into_charts(mesh, options, clock));
-    if (options.density) {
-        GIM_CHECK(adapt_density(options.samples, charted, clock));
-    }
-    GIM_CHECK(split_at_slits(options.samples, charted, clock));
-    GIM_TRY(result, pack_and_zip(options, std::move(charted), clock));
+    GIM_TRY(result, options.even_axes ? charts_on_even_axes(mesh, options, clock) : charts_of(mesh, options, clock));
     if (options.fit) {
         GIM_CHECK(fit_samples(mesh, options, result, clock));
     }

@@ -15,10 +15,12 @@
 namespace gim {
 
 struct MultiChartOptions {
-    uint32_t charts = 0;        // wanted; 0: automatic; more come out if topology or flattening needs them
-    uint32_t samples = 66049;   // bound on width * height
-    bool density = true;        // samples are denser where the surface needs it; false: even
-    uint32_t pack_effort = 30;  // more rounds of search pack more tightly; time grows with them
+    uint32_t charts = 0;          // wanted; 0: automatic; more come out if topology or flattening needs them
+    uint32_t samples = 66049;     // bound on width * height
+    bool density = true;          // samples are denser where the surface needs it; false: even
+    uint32_t pack_effort = 30;    // more rounds of search pack more tightly; time grows with them
+    uint32_t most_packings = 10;  // attempts before too few samples are an Error
+    bool even_axes = false;       // makes charts of the surface as even_axes.h maps it; for long and for flat surfaces
     std::optional<FitOptions::Strength> fit = FitOptions::Strength::kLoose;  // empty: samples stay as taken
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the result does not depend on it

@@ -4,13 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "encoder/base/parallel.h"
-
 namespace gim {
 
 namespace {
-
-constexpr size_t kTriplesPerBlock = 4096;
 
 std::vector<float> flat(const Pyramid<float>& pyramid) {
     std::vector<float> out = pyramid.base;
@@ -41,12 +37,6 @@ Pyramid<float> unflattened(const std::vector<float>& values, uint32_t side) {
     return pyramid;
 }
 
-// Returns area / cell_area, from scale = (cell_area / area)^(1/4).
-float relative_area_of(const DetailFrame& frame, float cell_area) {
-    const float s2 = frame.scale * frame.scale;
-    return cell_area > 0 ? 1 / (s2 * s2) : 1;
-}
-
 }  // namespace
 
 DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const DetailCoding& coding,
@@ -58,11 +48,8 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
     for (uint32_t e = steps; e > 0; --e)
         images[e - 1] = gim::analyse<Irreversible97>(images[e], (1u << e) + 1, (1u << e) + 1, 1, seams).base;
 
-    frames_.assign(4, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
-    steps_.assign(4, low_band_step(coding.quantizer, steps));
-    tangential_steps_ = steps_;  // unused for the base, which has no tangents
+    add_base(4, low_band_step(coding.quantizer, steps));
     norms_.assign(4, kBandNorms[steps - 1].low);
-    areas_.assign(4, 1);
     for (uint32_t e = 1; e <= steps; ++e) {
         const uint32_t lows = (1u << (e - 1)) + 1, highs = lows - 1, depth = steps - e + 1;
         const DetailSteps detail_steps = coding.steps_at(depth);
@@ -72,13 +59,7 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
                 orientation == Orientation::kDiagonal ? kBandNorms[depth - 1].diagonal : kBandNorms[depth - 1].edge;
             for (uint32_t row = 0; row < rows; ++row) {
                 for (uint32_t column = 0; column < columns; ++column) {
-                    frames_.push_back(field.at(orientation, row, column));
-                    float step[3];
-                    steps_in(frames_.back(), detail_steps, orientation, step);
-                    steps_.push_back(step[0]);
-                    tangential_steps_.push_back(step[1]);
-                    areas_.push_back(relative_area_of(frames_.back(), detail_steps.cell_area));
-                    norms_.push_back(norm);
+                    add_detail(field.at(orientation, row, column), detail_steps, orientation, norm);
                 }
             }
         };
@@ -101,16 +82,6 @@ DetailBasis::DetailBasis(const std::vector<float>& image, uint32_t side, const D
         is_copy_[copy] = true;
         norms_[source] *= std::sqrt(2.0f);
     }
-}
-
-void DetailBasis::turn(Coordinates& coordinates, Way way) const {
-    parallel_blocks(frames_.size(), kTriplesPerBlock, 0, [&](size_t, size_t begin, size_t end) {
-        for (size_t i = std::max<size_t>(begin, 4); i < end; ++i) {
-            float* c = &coordinates[3 * i];
-            const float from[3] = {c[0], c[1], c[2]};
-            way == Way::kIntoFrames ? into_frame(frames_[i], from, c) : out_of_frame(frames_[i], from, c);
-        }
-    });
 }
 
 void DetailBasis::gather_copies(Coordinates& coordinates, float weight) const {

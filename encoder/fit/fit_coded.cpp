@@ -1,5 +1,5 @@
 // A round linearises the distances (fitter.h) around the samples. Then it minimises over the change y of their
-// coordinates in the codec's own basis (detail_basis.h)
+// coordinates in the codec's own basis (fit_codec.h)
 //
 //     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
 //
@@ -19,21 +19,16 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
-#include "encoder/code/code_bands.h"
-#include "encoder/fit/detail_basis.h"
 #include "encoder/fit/fitter.h"
-#include "encoder/fit/fold_repair.h"
 #include "encoder/fit/prices.h"
+#include "encoder/fit/square_codec.h"
 #include "encoder/surface/surface_samples.h"
-#include "format/fuse.h"
-#include "format/ring.h"
-#include "format/seam.h"
 
 namespace gim {
 
 namespace {
 
-using Coordinates = DetailBasis::Coordinates;
+using Coordinates = ImageBasis::Coordinates;
 
 // Unfolding makes details cheaper and folds fewer, but takes samples away from where they fit best. A full fit that
 // nothing precedes unfolds before each free round. In a search, quick fits precede and full ones follow each other. There
@@ -100,7 +95,7 @@ void average_glued(const GridGluing& gluing, std::vector<float>& image) {
 // The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
-    CoordinateSystem(const FitSystem& system, const DetailBasis& basis, const GridGluing& gluing)
+    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const GridGluing& gluing)
         : system_(system), basis_(basis), gluing_(gluing) {
         for (size_t k = 0; k < 3; ++k) {
             in_[k].resize(system.right.size());
@@ -139,7 +134,7 @@ class CoordinateSystem {
     }
 
     const FitSystem& system_;
-    const DetailBasis& basis_;
+    const ImageBasis& basis_;
     const GridGluing& gluing_;
     Channels in_, out_;
 };
@@ -174,40 +169,27 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     return y;
 }
 
-std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
-    std::vector<uint32_t> classes(ring_length(side));
-    gim::ring_classes(seams, side, classes);
-    return classes;
-}
-
 }  // namespace
 
 struct CodedFit::Impl {
-    Impl(const GeometryImage& start, const SeamTable& file_seams, const Mesh& mesh, uint64_t first_seed)
+    Impl(const GeometryImage& start, const Mesh& mesh, uint64_t first_seed)
         : gluing(start.gluing),
           frame(mesh),
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
           fitter(start.positions, reference, gluing, frame, {}),
           first_positions(fitter.positions()),
-          side(start.width()),
-          seams(file_seams),
-          ring_classes(classes_of(seams, side)),
-          seed(first_seed),
-          repair(gluing, reference, frame, fitter.front(), {CodedPart{side, side, 0, 0, &seams, {}}}, fusing()) {}
+          seed(first_seed) {}
 
     GridGluing gluing;
     FitFrame frame;
     FitReference reference;
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
-    uint32_t side;
-    SeamTable seams;  // as in the file
-    std::vector<uint32_t> ring_classes;
     uint64_t seed;
     uint64_t rounds = 0;
     std::vector<Vec3> cycled_positions;  // from the last final fit, before its last rounds; in the frame
     uint64_t cycled_rounds = 0;
-    FoldRepair repair;
+    std::unique_ptr<FitCodec> codec;
 
     void keep_as_cycled() {
         cycled_positions = fitter.positions();
@@ -242,39 +224,20 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const DetailBasis basis(image, side, coding, &seams);
-        const Coordinates c = basis.analyse(image);
+        const std::unique_ptr<ImageBasis> basis = codec->basis(image, coding);
+        const Coordinates c = basis->analyse(image);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
-        CoordinateSystem coordinates(system, basis, gluing);
-        const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
+        CoordinateSystem coordinates(system, *basis, gluing);
+        const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
         for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
         fitter.take_step(step, true);
     }
 
-    Pyramid<int32_t> quantized(const Units& units) const {
-        Pyramid<float> bands = analyse<Irreversible97>(samples_in(units), side, &seams);
-        subtract_middle(&bands, units.bits);
-        return quantize_bands(bands, detail_coding_of(units), &seams).bands;
-    }
-
     // Moves samples to where a decoder would put them.
-    void quantize(const Units& units, bool repairs) {
-        Pyramid<int32_t> bands = quantized(units);
-        if (repairs) repair.repair({&bands, 1}, units, kRepairBetween);
-        fitter.place(repair.decode({&bands, 1}, units));
-    }
-
-    CloseSeams fusing() const {
-        return [this](std::vector<float>& image) {
-            const size_t ring = ring_classes.size();
-            const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
-            std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
-            std::vector<uint32_t> first(ring), members(ring);
-            fuse(side, ring_classes.data(), classes, image.data(),
-                 {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
-        };
+    void quantize(const Units& units, bool mends_folds) {
+        fitter.place(codec->decoded(samples_in(units), units, mends_folds));
     }
 };
 
@@ -283,13 +246,19 @@ CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
 CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, seams, reference, seed)) {}
+    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+    impl_->codec = std::make_unique<SquareCodec>(start.width(), seams, impl_->gluing, impl_->reference, impl_->frame,
+                                                 impl_->fitter.front());
+}
+
+CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed)
+    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+    impl_->codec = make_codec(impl_->frame);
+}
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
-void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
-    impl_->repair.repair({&bands, 1}, units, kLastRepair);
-}
+void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) { impl_->codec->repair(bands, units); }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);

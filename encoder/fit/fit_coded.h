@@ -1,4 +1,4 @@
-// Fits the samples of a square image to its surface and to the codec at once. Among images that are equally near to the
+// Fits the samples of an image to its surface and to the codec at once. Among images that are equally near to the
 // surface, looks for the one with the shortest file. Samples slide along the surface until the coarser image predicts
 // them. Details that are worth less than their bits vanish. Moves along the normal make up for the coarse quantization
 // of tangential details.
@@ -9,11 +9,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/fit.h"
+#include "encoder/fit/fit_codec.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
@@ -21,11 +23,18 @@
 
 namespace gim {
 
+struct FitFrame;
+
+// Makes the codec of a fit, whose samples are in that frame.
+using MakeFitCodec = std::function<std::unique_ptr<FitCodec>(const FitFrame& frame)>;
+
 class CodedFit {
   public:
-    // Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their details. `seed`
+    // For a square. Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their details. `seed`
     // decides where distances are sampled.
     CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
+    // For an image of any layout.
+    CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed);
     ~CodedFit();
     CodedFit(CodedFit&&) noexcept;
     CodedFit& operator=(CodedFit&&) noexcept;

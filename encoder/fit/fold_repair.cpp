@@ -28,7 +28,7 @@ constexpr uint32_t kDeepestTried = 5;  // depth of the coarsest details that are
 constexpr uint32_t kCluster = 3;       // reach of a cluster of folded cells
 constexpr size_t kFewest = 2;          // folded cells of a cluster that is worth a coarser detail
 constexpr size_t kTrials = 8;          // changes tried for a cluster
-constexpr double kMostFolded = 0.1;    // part of the cells; where more are folded, the image is lost anyway
+constexpr double kMostFolded = 0.03;   // part of the cells; where more seem folded, sheets lie on each other
 constexpr double kStill = 1e-8;        // squared shift, in squared steps, of a sample that does not move
 constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
 

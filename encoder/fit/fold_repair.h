@@ -50,7 +50,8 @@ class FoldRepair {
     FoldRepair(const GeometryImage& image, const Mesh& mesh, std::vector<CodedPart> parts, CloseSeams close);
 
     // bands: of each part; lossy. Makes at most effort.passes passes. Deterministic at any number of threads.
-    // Leaves an image alone where a tenth of its cells is folded. Cost: a decoding for each pass and each coarse trial,
+    // Leaves an image alone where three in a hundred cells seem folded: then sheets lie nearer to each other than the
+    // samples to them, and repairs would only move samples away. Cost: a decoding for each pass and each coarse trial,
     // and about a millisecond for each folded cell.
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort);
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "encoder/fit/detail_basis.h"
+#include "encoder/fit/image_basis.h"
 
 namespace gim {
 
@@ -14,7 +14,7 @@ struct Prices {
     std::vector<float> price, inverse;
 
     // c: the current coordinates.
-    Prices(const DetailBasis& basis, const DetailBasis::Coordinates& c, float quantizer, Free free);
+    Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free);
 };
 
 }  // namespace gim

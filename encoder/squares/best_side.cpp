@@ -9,11 +9,6 @@ namespace gim {
 
 namespace {
 
-bool is_better(const Encoded& a, const Encoded& b, const RateTarget& rate) {
-    return rate.kind == RateTarget::Kind::kBytes ? a.report.error.psnr > b.report.error.psnr
-                                                 : a.bytes.size() < b.bytes.size();
-}
-
 EncodeOptions halved(EncodeOptions options) {
     options.side = (options.side - 1) / 2 + 1;
     options.node_side = std::min(options.node_side, options.side);
@@ -34,22 +29,16 @@ bool may_halve(const EncodeOptions& options) {
 Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& whole, const StageClock& clock,
                               const Observer& observer) {
     if (!may_halve(whole)) return run(whole, {}, observer);
-    const auto improves = [&](const Result<Encoded>& now, const Result<Encoded>& best) {
-        return now.ok() && (!best.ok() || is_better(now.value(), best.value(), whole.rate));
-    };
     EncodeOptions options = halved(whole);
-    const auto contest_with = [&](const Result<Encoded>& best) {
-        return Contest{best.ok() ? double(best.value().bytes.size()) : 0, false};
-    };
     auto best = run(options, {0, true}, observer);
     auto of_whole = run(whole, contest_with(best), {});
-    if (!best.ok() || improves(of_whole, best)) {
+    if (!best.ok() || improves(of_whole, best, whole.rate)) {
         best = std::move(of_whole);
     } else {
         while (options.side >= RateSearchValues::kLeastSideToHalve) {
             options = halved(options);
             auto half = run(options, contest_with(best), {});
-            if (!improves(half, best)) break;
+            if (!improves(half, best, whole.rate)) break;
             best = std::move(half);
         }
     }

@@ -1,17 +1,11 @@
 // Chooses the side of the square: codes several and keeps the best file.
 #pragma once
 
-#include <functional>
-
 #include "encoder/base/stage_clock.h"
-#include "encoder/code/contest.h"
+#include "encoder/layout/encode_once.h"
 #include "gim/encoder.h"
 
 namespace gim {
-
-// Makes and codes images with these options. contest: the other sides.
-using EncodeOnce =
-    std::function<Result<Encoded>(const EncodeOptions& options, const Contest& contest, const Observer& observer)>;
 
 // Codes the side that is asked for. If the options allow smaller sides and the target is coarse, also tries half of the
 // side, and goes on as long as halving makes the file better. Returns the best file. The half runs first, because it

@@ -18,13 +18,14 @@ class Splitter {
     bool split_edges() {
         const EdgeTable edges = build_edge_table(mesh_.triangles, mesh_.positions.size());
         std::vector<uint8_t> is_touched(mesh_.triangles.size(), 0);
+        const auto is_free_face = [&](uint32_t f) { return f < is_touched.size() && !is_touched[f]; };  // no new face
         bool is_left = false;
         for (uint32_t e = 0; e < edges.size(); ++e) {
             const auto around = edges.around(e);
             for (const uint32_t h : around.subspan(1)) {
                 const uint32_t g = twin_[h];
                 if (g == around[0] || (g != kNone && g < h)) continue;
-                const bool is_free = !is_touched[face_of(h)] && (g == kNone || !is_touched[face_of(g)]);
+                const bool is_free = is_free_face(face_of(h)) && (g == kNone || is_free_face(face_of(g)));
                 is_left = is_left || !is_free;
                 if (!is_free) continue;
                 is_touched[face_of(h)] = 1;

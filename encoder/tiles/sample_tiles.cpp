@@ -77,6 +77,11 @@ TileImage sample_tiles(const std::vector<Vec3>& positions, const TileMap& map, c
     return image;
 }
 
+Result<std::vector<uint32_t>> samples_of_atlas(const TileImage& tiles) {
+    GIM_TRY(complex, complex_of(tiles.quads, tiles.vertices));
+    return texels(complex.view(), 1u << tiles.exponent);
+}
+
 Result<GeometryImage> atlas_of(const TileImage& tiles) {
     GIM_TRY(complex, complex_of(tiles.quads, tiles.vertices));
     const uint32_t side = 1u << tiles.exponent;

@@ -20,5 +20,7 @@ TileImage sample_tiles(const std::vector<Vec3>& positions, const TileMap& map, c
 // The atlas of tiles. Copies of a sample are one surface point, with equal bits. Slots without a tile, and cells between
 // slots, are empty. O(texels).
 Result<GeometryImage> atlas_of(const TileImage& tiles);
+// Per texel of the atlas: the number of its sample, or kNone.
+Result<std::vector<uint32_t>> samples_of_atlas(const TileImage& tiles);
 
 }  // namespace gim

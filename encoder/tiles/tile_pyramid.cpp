@@ -68,17 +68,13 @@ class StepQuantizer {
         local_ = details;
         const TileFrames field(complex_, planes_, samples_.data());
         for_each([&](uint32_t tile, Orientation orientation, uint32_t row, uint32_t column, size_t i) {
-            DetailLanes<1> lane;
-            field.find_tangents(tile, orientation, row, column, lane, 0);
-            make_frames(lane, 1, steps_.cell_area);
             Frame& f = frames_[i / 3];
-            for (int a = 0; a < 3; ++a)
-                for (int k = 0; k < 3; ++k) f.frame.axis[a][k] = steps_.in_frames ? lane.axis[a][k][0] : a == k;
-            f.frame.scale = lane.scale[0];
-            if (steps_.in_frames)
+            f.frame = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1};
+            f.step.fill(steps_.of(orientation));
+            if (steps_.in_frames) {
+                f.frame = field.at(tile, orientation, row, column, steps_.cell_area);
                 steps_in(f.frame, steps_, orientation, f.step.data());
-            else
-                f.step.fill(steps_.of(orientation));
+            }
             into_frame(f.frame, &details[i], &local_[i]);
             for (size_t k = 0; k < 3; ++k) local_[i + k] /= f.step[k];
         });
@@ -169,35 +165,20 @@ class StepQuantizer {
 }  // namespace
 
 template <class Wavelet>
+void analyse_step(const QuadComplex& complex, const TilePlanes& planes, typename Wavelet::Sample* samples,
+                  typename Wavelet::Sum* sums) {
+    TileLifting<Wavelet>(complex, planes, samples, sums).analyse();
+    scale_low<Wavelet>(complex, planes, false, samples);
+}
+
+template <class Wavelet>
 TilePyramid<typename Wavelet::Sample> analyse_tiles(const QuadComplex& complex,
                                                     std::vector<typename Wavelet::Sample> grids, uint32_t exponent) {
     using Sample = typename Wavelet::Sample;
-    TilePyramid<Sample> pyramid;
-    pyramid.details.resize(exponent);
     std::vector<typename Wavelet::Sum> sums(6 * size_t{complex.vertices});
-    for (uint32_t step = exponent; step > 0; --step) {
-        const TilePlanes planes(1u << (step - 1));
-        std::vector<Sample> samples(complex.tiles * planes.size());
-        const size_t stride = grids.size() / complex.tiles;
-        for (uint32_t t = 0; t < complex.tiles; ++t)
-            split_planes(planes, grids.data() + t * stride, samples.data() + t * planes.size());
-        TileLifting<Wavelet>(complex, planes, samples.data(), sums.data()).analyse();
-        scale_low<Wavelet>(complex, planes, false, samples.data());
-        std::vector<Sample>& details = pyramid.details[step - 1];
-        const auto low = static_cast<size_t>(planes.horizontal());
-        grids.resize(complex.tiles * low);
-        for (uint32_t t = 0; t < complex.tiles; ++t) {
-            const auto tile = samples.begin() + static_cast<ptrdiff_t>(t * planes.size());
-            std::copy_n(tile, low, grids.begin() + static_cast<ptrdiff_t>(t * low));
-            details.insert(details.end(), tile + planes.horizontal(), tile + static_cast<ptrdiff_t>(planes.size()));
-        }
-    }
-    pyramid.base.resize(3 * size_t{complex.vertices});
-    static constexpr uint32_t kCorner[4] = {0, 1, 3, 2};  // of 2 x 2 samples
-    for (uint32_t h = 0; h < complex.half_edges(); ++h)
-        std::copy_n(grids.begin() + 12 * ptrdiff_t{tile_of(h)} + 3 * ptrdiff_t{kCorner[side_of(h)]}, 3,
-                    pyramid.base.begin() + 3 * ptrdiff_t{complex.vertex[h]});
-    return pyramid;
+    return split_tiles(complex, std::move(grids), exponent, [&](const TilePlanes& planes, Sample* samples) {
+        analyse_step<Wavelet>(complex, planes, samples, sums.data());
+    });
 }
 
 template <class Wavelet>
@@ -217,7 +198,8 @@ std::vector<typename Wavelet::Sample> restore_tiles(const QuadComplex& complex,
 
 template <class Wavelet>
 TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape& shape,
-                                    const TilePyramid<float>& pyramid, const DetailCoding& coding) {
+                                    const TilePyramid<float>& pyramid, const DetailCoding& coding,
+                                    std::vector<float>* decoded) {
     TilePyramid<int32_t> out;
     const uint32_t steps = pyramid.steps();
     const float base_step = tile_base_step(shape, coding.quantizer);
@@ -232,11 +214,15 @@ TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape&
         const TilePlanes planes(1u << (step - 1));
         const DetailSteps detail_steps = tile_steps_at(shape, coding, steps - step + 1);
         out.details.push_back(StepQuantizer(complex, planes, detail_steps, samples).run(pyramid.details[step - 1]));
-        if (step < steps) samples = synthesize_step<Wavelet>(complex, planes, false, std::move(samples));
+        if (step < steps || decoded != nullptr)
+            samples = synthesize_step<Wavelet>(complex, planes, step == steps, std::move(samples));
     }
+    if (decoded != nullptr) *decoded = std::move(samples);
     return out;
 }
 
+template void analyse_step<Tiles97>(const QuadComplex&, const TilePlanes&, float*, float*);
+template void analyse_step<TilesSharp>(const QuadComplex&, const TilePlanes&, float*, float*);
 template TilePyramid<int32_t> analyse_tiles<Tiles53>(const QuadComplex&, std::vector<int32_t>, uint32_t);
 template TilePyramid<float> analyse_tiles<Tiles97>(const QuadComplex&, std::vector<float>, uint32_t);
 template TilePyramid<float> analyse_tiles<TilesSharp>(const QuadComplex&, std::vector<float>, uint32_t);
@@ -244,8 +230,9 @@ template std::vector<int32_t> restore_tiles<Tiles53>(const QuadComplex&, const T
 template std::vector<float> restore_tiles<Tiles97>(const QuadComplex&, const TilePyramid<float>&);
 template std::vector<float> restore_tiles<TilesSharp>(const QuadComplex&, const TilePyramid<float>&);
 template TilePyramid<int32_t> quantize_tiles<Tiles97>(const QuadComplex&, const TileShape&, const TilePyramid<float>&,
-                                                      const DetailCoding&);
+                                                      const DetailCoding&, std::vector<float>*);
 template TilePyramid<int32_t> quantize_tiles<TilesSharp>(const QuadComplex&, const TileShape&,
-                                                         const TilePyramid<float>&, const DetailCoding&);
+                                                         const TilePyramid<float>&, const DetailCoding&,
+                                                         std::vector<float>*);
 
 }  // namespace gim

@@ -99,12 +99,7 @@ TileLevelCoder::TileLevelCoder(const TileImage& image, const QuadComplex& comple
     const QuadComplex& view = coded_.complex.view();
     header_.layout = FileLayout::kTiles;
     header_.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
-    header_.tiles = {view.tiles,
-                     view.vertices,
-                     view.edges - 2 * view.tiles,
-                     image.exponent,
-                     image.is_sharp && !parameters.lossless,
-                     !image.sharp.empty()};
+    header_.tiles = shape_of(image, view, parameters.lossless);
     header_.level_count = levels_of(view.tiles, image.exponent, std::max(parameters.base_side, 3u));
     const std::vector<Vec3> grids = coded_positions(image, coded_, complex);
     const bool has_units = !parameters.lossless && parameters.units;
@@ -154,6 +149,15 @@ std::vector<std::vector<uint8_t>> TileLevelCoder::code_levels(const Header& head
 }
 
 }  // namespace
+
+TileShape shape_of(const TileImage& image, const QuadComplex& complex, bool lossless) {
+    return {complex.tiles,
+            complex.vertices,
+            complex.edges - 2 * complex.tiles,
+            image.exponent,
+            image.is_sharp && !lossless,
+            !image.sharp.empty()};
+}
 
 Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters) {
     GIM_CHECK(check(image, parameters));

@@ -16,6 +16,9 @@ namespace gim {
 Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters);
 Result<std::vector<uint8_t>> write_tiles(const TileImage& image, const CodingParameters& parameters);
 
+// Returns the shape that the header of a file has. complex: that of the image, in any order.
+TileShape shape_of(const TileImage& image, const QuadComplex& complex, bool lossless);
+
 // Returns the units of positions and details in a lossy file of the image. Leaves the quantizer out.
 Result<Units> tile_units(const TileImage& image, uint32_t bits);
 

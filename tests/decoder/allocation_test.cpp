@@ -41,8 +41,9 @@ namespace {
 
 TEST(Allocation, NoCallOfTheDecoderAllocates) {
 #if GIM_COUNTS_MALLOC
-    for (const char* name : {"sphere-33-lossy", "torus-17-lossless", "two-images-lossless", "text-zstd",
-                             "planes-sphere-17", "charts-pillow-lossy", "charts-unequal-lossless"}) {
+    for (const char* name :
+         {"sphere-33-lossy", "torus-17-lossless", "two-images-lossless", "text-zstd", "planes-sphere-17",
+          "charts-pillow-lossy", "charts-unequal-lossless", "tiles-cube-lossy", "tiles-genus-2-sharp-lossy"}) {
         const auto bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
         ASSERT_FALSE(bytes.empty());
         gim_info info;

@@ -11,12 +11,14 @@
 #include "encoder/code/file_units.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/squares/write_squares.h"
+#include "encoder/tiles/write_tiles.h"
 #include "format/checksum.h"
 #include "format/plane_code.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "tests/decoder/vectors.h"
 #include "tests/encoder/charts/made_charts.h"
+#include "tests/encoder/tiles/made_tiles.h"
 #include "tests/format/random_sideband.h"
 #include "tests/format/raw_chart_table.h"
 
@@ -97,6 +99,27 @@ Bytes encode_charts(const ChartLevels& charts, const CodingParameters& parameter
         std::abort();
     }
     return writer.value().write(parameters.quantizer);
+}
+
+// Tiles that are bilinear between integer corners, with noise of 0 .. noise-1.
+TileImage tiles(const MadeQuads& made, uint32_t exponent, uint32_t noise, uint32_t seed) {
+    MadeQuads integers = made;
+    for (uint32_t v = 0; v < made.corners.size(); ++v)
+        integers.corners[v] = 1024 * Vec3(v * 37 % 16, v * 59 % 16 + v / 4, v * 23 % 16);
+    TileImage image = bilinear_tiles(integers, exponent);
+    Random random(seed);
+    for (Vec3& p : image.positions)
+        for (int k = 0; k < 3; ++k) p[k] = std::floor(p[k]) + (noise > 0 ? random.below(noise) : 0);
+    return image;
+}
+
+Bytes encode_tiles(const TileImage& image, const CodingParameters& parameters) {
+    auto file = write_tiles(image, parameters);
+    if (!file.ok()) {
+        std::fprintf(stderr, "tiles: %s\n", file.error().message.c_str());
+        std::abort();
+    }
+    return file.value();
 }
 
 // An attribute plane of integers: a slope in the first component, a hill and stripes in the others.
@@ -354,6 +377,69 @@ void write_valid_charts(Writer& out, const Bytes& kept) {
               encode_charts(made_images(2, 9, {rectangle_chart(2, 9, 1)}, {kNoMate}, 1), planes));
 }
 
+void write_valid_tiles(Writer& out) {
+    out.valid("tiles-one-lossless", encode_tiles(tiles(strip(1, 1), 2, 3, 1), lossless(10, 3)));
+    out.valid("tiles-one-lossy", encode_tiles(tiles(strip(1, 1), 5, 300, 2), lossy(12, 9, 60)));
+    out.valid("tiles-cube-lossless", encode_tiles(tiles(cube(), 2, 9, 3), lossless(12, 3)));
+    out.valid("tiles-cube-lossy", encode_tiles(tiles(cube(), 3, 9, 3), lossy(12, 5, 6)));
+    out.valid("tiles-torus-lossy", encode_tiles(tiles(test::torus(3, 3), 3, 0, 4), lossy(14, 3, 40)));
+    out.valid("tiles-strip-lossy-coarse", encode_tiles(tiles(strip(3, 2), 3, 0, 5), lossy(12, 3, 500)));
+    out.valid("tiles-pillow-lossless-20-bits", encode_tiles(tiles(pillow(), 3, 1u << 22, 6), lossless(20, 3)));
+    out.valid("tiles-two-components-lossy",
+              encode_tiles(tiles(both(pillow(), strip(2, 1)), 3, 3, 7), lossy(12, 3, 10)));
+    out.valid("tiles-smallest", encode_tiles(tiles(cube(), 1, 0, 8), lossy(8, 3, 4)));
+    TileImage sharp = tiles(genus_2(), 2, 3, 9);
+    sharp.is_sharp = true;
+    for (uint32_t h = 0; h < 4 * sharp.quads.size(); ++h) sharp.sharp.push_back(h % 3 == 0);
+    out.valid("tiles-genus-2-sharp-lossy", encode_tiles(sharp, lossy(12, 3, 10)));
+    // Details that are not in frames; and a wide origin.
+    const TileImage noisy = tiles(cube(), 2, 60, 10);
+    CodingParameters plain = lossy(12, 3, 20);
+    plain.units = tile_units(noisy, 12).value();
+    plain.units->tangential = plain.units->cell_area = 0;
+    out.valid("tiles-frames-none", encode_tiles(noisy, plain));
+    out.valid("tiles-wide-origin", far_away(encode_tiles(noisy, lossy(12, 3, 20))));
+}
+
+void write_invalid_tiles(Writer& out) {
+    const Bytes file = encode_tiles(tiles(cube(), 2, 9, 3), lossless(12, 3));
+    const auto header = [&](const char* name, const std::function<void(TileShape&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.header.tiles); }));
+    };
+    header("malformed.tiles-none", [](TileShape& t) { t.tiles = 0; });
+    header("malformed.tiles-too-many", [](TileShape& t) { t.tiles = kMostTiles + 1; });
+    header("malformed.tiles-three-vertices", [](TileShape& t) { t.vertices = 3; });
+    header("malformed.tiles-vertices-more-than-corners", [](TileShape& t) { t.vertices = 25; });
+    header("malformed.tiles-rim-longer-than-sides", [](TileShape& t) { t.rim = 13; });
+    header("malformed.tiles-fewer-steps-than-levels", [](TileShape& t) { t.exponent = 1; });
+    header("malformed.tiles-exponent-11", [](TileShape& t) { t.exponent = 11; });
+    header("malformed.tiles-one-vertex-less", [](TileShape& t) { t.vertices = 7; });
+    header("malformed.tiles-one-vertex-more", [](TileShape& t) { t.vertices = 9; });
+    header("malformed.tiles-rim-of-a-closed-surface", [](TileShape& t) { t.rim = 1; });
+    header("malformed.tiles-more-than-in-the-seams", [](TileShape& t) { t.tiles = 7; });
+    header("malformed.tiles-lossless-5-3", [](TileShape& t) { t.is_sharp = true; });
+    header("malformed.tiles-samples", [](TileShape& t) { t.tiles = 1u << 11, t.exponent = 10; });
+    header("limit-exceeded.tiles-samples", [](TileShape& t) { t.tiles = 70, t.exponent = 10; });
+    header("limit-exceeded.tiles-side", [](TileShape& t) { t.tiles = 266, t.exponent = 10; });
+    out.invalid("unsupported-version.tiles-reserved-flag",
+                with_parts(file, [](Parts& p) { p.header.tiles.exponent |= 0x40; }));
+
+    const auto seams = [&](const char* name, const Bytes& payload) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { p.payloads[0] = payload; }));
+    };
+    seams("malformed.tiles-seams-empty", {});
+    seams("malformed.tiles-seams-of-ones", Bytes(16, 0xFF));
+    // Two half-edges of the second tile become one edge.
+    seams("malformed.tiles-folded", {0x00, 0xFF});
+    const auto stream = [&](const char* name, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads[1]); }));
+    };
+    stream("malformed.tiles-stream-of-ones", [](Bytes& b) { b.assign(64, 0xFF); });
+    stream("malformed.tiles-stream-halved", [](Bytes& b) { b.resize(b.size() / 2); });
+    out.invalid("unsupported-version.tiles-plane",
+                with_parts(file, [](Parts& p) { insert_chunk(&p, p.chunks.size(), 3, true, plane({3}, 48, 200)); }));
+}
+
 void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {
     const auto changed = [&](const Bytes& from, size_t at, uint8_t value) {
         Bytes b = from;
@@ -368,7 +454,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     }());
     out.invalid("not-gim.raw-floats", to_bytes(std::vector<float>(75, 1.0f)));
     out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
-    out.invalid("unsupported-version.layout-2", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{2}; }));
+    out.invalid("unsupported-version.layout-3", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{3}; }));
     out.invalid("unsupported-version.reserved-flag",
                 with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x20}; }));
     out.invalid("unsupported-version.critical-chunk",
@@ -697,6 +783,7 @@ int main(int argc, char** argv) {
     Writer out(folder);
     write_valid(out);
     write_valid_charts(out, kept);
+    write_valid_tiles(out);
     const Bytes plain = encode({hill(5, open_square(), 0, 1)}, lossless(8, 5));
     const Bytes sphere = encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5));
     const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
@@ -708,5 +795,6 @@ int main(int argc, char** argv) {
     write_invalid_chart_tables(out, chart);
     write_invalid_borders(out, chart);
     write_invalid_chart_planes(out);
+    write_invalid_tiles(out);
     return out.fine() ? 0 : 1;
 }

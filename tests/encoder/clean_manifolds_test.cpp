@@ -5,26 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <random>
 #include <set>
 #include <string>
 
 #include "corpus/generators.h"
 #include "gim/encoder.h"
 #include "tests/encoder/decoded_topology.h"
+#include "tests/random_numbers.h"
 
 namespace gim {
 namespace {
 
 using corpus::Point;
-using Random = std::mt19937_64;
 
-double between(Random& random, double least, double most) {
-    return least + (most - least) * (static_cast<double>(random() >> 11) * 0x1p-53);
-}
-uint32_t number_between(Random& random, uint32_t least, uint32_t most) {
-    return least + static_cast<uint32_t>(random() % (most - least + 1));
-}
 Point point_in(Random& random, double half) {
     return {between(random, -half, half), between(random, -half, half), between(random, -half, half)};
 }

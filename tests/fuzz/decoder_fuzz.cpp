@@ -17,14 +17,17 @@ constexpr gim_limits kLimits = {129 * 129 * 2, 8, 129};
 void sign(std::vector<uint8_t>* bytes) {
     using namespace gim;
     ByteReader reader(*bytes);
-    uint64_t index_size = 0, images = 0, height = 0;
+    uint64_t index_size = 0, images = 0, next = 0;
     uint8_t kind = 0;
     if (!reader.skip(8) || !reader.read_leb128(&index_size) || index_size < 13 || index_size > bytes->size()) return;
     const size_t body = static_cast<size_t>(index_size) - 4;
     if (!reader.read_u8(&kind) || !reader.skip(2) || !reader.read_leb128(&images)) return;
-    // Images and their sides, or width and height.
-    const bool charts = (kind & 3) == 1;
-    if (!(charts ? reader.read_leb128(&height) : reader.skip(static_cast<size_t>(images)))) return;
+    // Images and their sides, or width and height, or three numbers and the shape of tiles.
+    const int layout = kind & 3;
+    const bool sizes = layout == 0   ? reader.skip(static_cast<size_t>(images))
+                       : layout == 1 ? reader.read_leb128(&next)
+                                     : reader.read_leb128(&next) && reader.read_leb128(&next) && reader.skip(1);
+    if (!sizes) return;
     if (reader.skip(kind & 4 ? 20 : 16)) {
         uint64_t offset = index_size;
         while (reader.position() < body) {
@@ -77,7 +80,7 @@ void decode(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t im
     for (const float v : n)
         if (!std::isfinite(v)) __builtin_trap();
     for (const float v : grid)
-        if (!std::isfinite(v) && !(charts && std::isnan(v))) __builtin_trap();
+        if (!std::isfinite(v) && !(info.layout != GIM_LAYOUT_GIM && std::isnan(v))) __builtin_trap();
     for (size_t i = 0; i < t.size(); ++i) {
         if (t[i] >= l.vertex_count || grid_t[i] >= samples) __builtin_trap();
         // Charts of hostile files may overlap at level 0.

@@ -417,6 +417,18 @@ TEST(PlyDialects, FacesMayHaveTheColors) {
     EXPECT_EQ(mesh.appearance.corner_colors[4][1], (Color{0, 1, 0}));
 }
 
+TEST(PlyDialects, ColoursOfVerticesWinOverThoseOfFacesWithAWarning) {
+    const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + colors +
+        "element face 1\nproperty list uchar int vertex_indices\n" + colors + "end_header\n";
+    const std::string vertices = "0 0 0 255 0 51\n1 0 0 255 0 51\n0 1 0 255 0 51\n";
+    const Read tinted = read_from("", head + vertices + "3 0 1 2 0 255 0\n", "ply");
+    EXPECT_EQ(mesh_of(tinted, "tinted").appearance.corner_colors.at(0)[0], (Color{1, 0, 0.2f}));
+    EXPECT_EQ(tinted.warnings.size(), 1U);
+    EXPECT_TRUE(read_from("", head + vertices + "3 0 1 2 255 255 255\n", "ply").warnings.empty());
+}
+
 TEST(PlyDialects, NumbersThatTheHeaderDoesNotNameAreDropped) {
     const TriangleMesh expected = read(kPly, "ply");
     for (const std::string& text :

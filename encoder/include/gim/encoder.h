@@ -207,10 +207,12 @@ struct EncodeOptions {
     // kGim with a coarse target of PSNR, distance or bytes: also codes images of half the side, halves again while that
     // gives a better file, and keeps the best file. Takes about 1.5 times the time. The cut is chosen at the first half.
     bool try_smaller_sides = false;
-    // kMcgim: largest width * height. Charts that do not fit get up to 32 times as many, with a warning.
+    // kMcgim, kTiles: largest width * height. Charts that do not fit get up to 32 times as many, with a warning.
     uint32_t samples = 66049;
     // kMcgim: wanted number of charts; 0: chosen by the shape. More are made if topology or flattening needs them.
     uint32_t charts = 0;
+    // kTiles: wanted number of tiles; 0: chosen by the encoder. More are made if topology needs them.
+    uint32_t tiles = 0;
     // kGim: side of the grid on which cut-nodes lie; more than `side` counts as `side`. All levels down to this side are
     // closed. The encoder takes a finer grid if the cut does not fit whole units of this one.
     uint32_t node_side = 17;
@@ -291,9 +293,10 @@ struct EncodeReport {
     uint32_t images = 0;                               // kGim: one per component; else 1
     uint32_t width = 0, height = 0;                    // of the largest image
     uint64_t samples = 0;                              // of all images
-    uint32_t side = 0, node_side = 0;                  // kGim: of the largest image
+    uint32_t side = 0, node_side = 0;                  // kGim: of the largest image; kTiles: of a tile
     uint32_t cut_paths = 0;                            // of all images
     uint32_t charts = 0;                               // kMcgim
+    uint32_t tiles = 0;                                // kTiles
     uint64_t defined_samples = 0;                      // kMcgim
     double packing_efficiency = 0;                     // kMcgim: defined_samples / samples
     double cut_length = 0;                             // object units

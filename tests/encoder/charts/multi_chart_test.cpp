@@ -70,6 +70,27 @@ TEST(MultiChart, EverySurfaceComesBackWithItsTopologyAndShape) {
     }
 }
 
+// A tube that is much longer than wide has no three samples around it unless its axes are made even.
+TEST(MultiChart, EvenAxesMakeChartsOfALongTube) {
+    Mesh mesh = surface_named("torus-576");
+    for (Vec3& p : mesh.positions) p.x() *= 300;
+    StageClock clock({});
+    MultiChartOptions options;
+    options.samples = 10000;
+    options.pack_effort = 2;
+    options.most_packings = 2;
+    options.fit = {};
+    EXPECT_FALSE(make_multi_chart_image(mesh, options, clock).ok());
+    options.even_axes = true;
+    const auto made = make_multi_chart_image(mesh, options, clock);
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    expect_same_topology(mesh, made.value().image, "long torus");
+    expect_glued_samples_are_equal(made.value().image, "long torus");
+    const auto compared = ReferenceSurface(mesh).compare(surface_of(made.value().image).mesh, {.samples = 20000});
+    ASSERT_TRUE(compared.ok());
+    EXPECT_GT(compared.value().psnr, 50);
+}
+
 TEST(MultiChart, FewSamplesDoNotBreakTheSurface) {
     for (const NamedMesh& m : surfaces()) {
         const auto made = image_of(m.mesh, 6, 5000);

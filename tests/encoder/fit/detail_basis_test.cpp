@@ -119,8 +119,8 @@ TEST(DetailBasis, StepsFollowBandComponentAndArea) {
     const std::vector<float> image = torus_units();
     const DetailBasis basis(image, kSide, kCoding), without_area(image, kSide, {8, true, 3, 0});
     for (size_t i = 0; i < basis.size(); ++i) {
-        const bool tangential = i >= DetailBasis::kBase && i % 3 != 0;
-        ASSERT_EQ(DetailBasis::is_tangential(i), tangential);
+        const bool tangential = i >= basis.base_size() && i % 3 != 0;
+        ASSERT_EQ(basis.is_tangential(i), tangential);
         ASSERT_FLOAT_EQ(without_area.step(i) * without_area.norm(i), tangential ? 24 : 8);
         ASSERT_EQ(without_area.relative_area(i), 1.0f);
         // Normal steps are divided by the fourth root of the ratio of areas.
@@ -154,8 +154,8 @@ TEST(DetailBasis, FirstComponentIsAlongTheNormal) {
     for (size_t i = 0; i < moved.size(); i += 3) moved[i] += random.unit();
     const DetailBasis::Coordinates before = basis.analyse(plane), after = basis.analyse(moved);
     double normal = 0;
-    for (size_t i = DetailBasis::kBase; i < after.size(); ++i) {
-        if (DetailBasis::is_tangential(i)) {
+    for (size_t i = basis.base_size(); i < after.size(); ++i) {
+        if (basis.is_tangential(i)) {
             ASSERT_NEAR(after[i], before[i], 1e-3f);
         } else {
             normal += std::abs(double{after[i]} - before[i]);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "encoder/fit/detail_basis.h"
 #include "tests/encoder/grid_images.h"
 
 namespace gim {
@@ -77,14 +78,14 @@ TEST(Prices, LargerDetailsAndFinerStepsCostLess) {
     const Prices cheap(basis, large, 8, Free::kAll), dear(basis, small, 8, Free::kAll),
         fine(basis, large, 4, Free::kAll), held(basis, large, 8, Free::kNormals);
     for (size_t i = 0; i < basis.size(); ++i) {
-        if (i < DetailBasis::kBase) {
+        if (i < basis.base_size()) {
             ASSERT_EQ(cheap.price[i], 0) << "the base is not paid for";
             continue;
         }
         ASSERT_GT(cheap.price[i], 0);
         ASSERT_LT(cheap.price[i], dear.price[i]);
         ASSERT_LT(fine.price[i], cheap.price[i]);
-        if (DetailBasis::is_tangential(i)) {
+        if (basis.is_tangential(i)) {
             ASSERT_EQ(held.inverse[i], 0);
         } else {
             ASSERT_EQ(held.inverse[i], cheap.inverse[i]);

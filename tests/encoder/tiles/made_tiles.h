@@ -107,29 +107,41 @@ inline std::vector<MadeQuads> all_made_quads() {
     return {cube(), torus(3, 3), torus(6, 4), strip(1, 1), strip(4, 2), genus_2(), pillow(), both(cube(), strip(2, 2))};
 }
 
-// Samples bilinear between the corners, on a sphere if asked for, plus a wave, plus noise.
-inline TileImage tile_image(const MadeQuads& made, uint32_t exponent, double noise = 0, bool on_sphere = false) {
+// Calls f(tile, row, column, sample) for all samples of all tiles.
+template <class F>
+void for_each_tile_sample(const MadeQuads& made, uint32_t exponent, const F& f) {
+    const auto complex = complex_of(made.quads, static_cast<uint32_t>(made.corners.size()));
+    const uint32_t side = 1u << exponent;
+    const TileSamples samples(complex.value().view(), side);
+    for (uint32_t t = 0; t < made.quads.size(); ++t)
+        for (uint32_t r = 0; r <= side; ++r)
+            for (uint32_t c = 0; c <= side; ++c) f(t, r, c, samples.at(t, r, c));
+}
+
+// Samples bilinear between the corners.
+inline TileImage bilinear_tiles(const MadeQuads& made, uint32_t exponent) {
     TileImage image;
     image.quads = made.quads;
     image.vertices = static_cast<uint32_t>(made.corners.size());
     image.exponent = exponent;
-    const auto complex = complex_of(image.quads, image.vertices);
-    const uint32_t side = 1u << exponent;
-    const TileSamples samples(complex.value().view(), side);
-    image.positions.resize(samples.count());
-    for (uint32_t t = 0; t < image.quads.size(); ++t) {
+    const double side = 1u << exponent;
+    for_each_tile_sample(made, exponent, [&](uint32_t t, uint32_t r, uint32_t c, uint32_t sample) {
         const Quad& q = image.quads[t];
-        for (uint32_t r = 0; r <= side; ++r) {
-            for (uint32_t c = 0; c <= side; ++c) {
-                const double u = double(c) / side, v = double(r) / side;
-                Vec3 p = (1 - v) * ((1 - u) * made.corners[q[0]] + u * made.corners[q[1]]) +
-                         v * ((1 - u) * made.corners[q[3]] + u * made.corners[q[2]]);
-                if (on_sphere) p.normalize();
-                const double x = p[0], y = p[1], z = p[2];
-                p += 0.05 * Vec3(std::sin(2 * y + z), std::sin(2 * z + x), std::cos(2 * x - y));
-                image.positions[samples.at(t, r, c)] = p;
-            }
-        }
+        const double u = c / side, v = r / side;
+        if (sample >= image.positions.size()) image.positions.resize(sample + 1);
+        image.positions[sample] = (1 - v) * ((1 - u) * made.corners[q[0]] + u * made.corners[q[1]]) +
+                                  v * ((1 - u) * made.corners[q[3]] + u * made.corners[q[2]]);
+    });
+    return image;
+}
+
+// The same on a sphere if asked for, plus a wave, plus noise.
+inline TileImage tile_image(const MadeQuads& made, uint32_t exponent, double noise = 0, bool on_sphere = false) {
+    TileImage image = bilinear_tiles(made, exponent);
+    for (Vec3& p : image.positions) {
+        if (on_sphere) p.normalize();
+        const double x = p[0], y = p[1], z = p[2];
+        p += 0.05 * Vec3(std::sin(2 * y + z), std::sin(2 * z + x), std::cos(2 * x - y));
     }
     std::mt19937 random(7);
     for (Vec3& p : image.positions)

@@ -1,0 +1,27 @@
+// What the fit to the codec knows of a codec: the basis in which files hold details, and the samples that a decoder has.
+// Each layout has one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "encoder/code/wavelet_analysis.h"
+#include "encoder/fit/image_basis.h"
+#include "encoder/surface/mesh.h"
+#include "format/container.h"
+#include "format/detail_frame.h"
+
+namespace gim {
+
+class FitCodec {
+  public:
+    virtual ~FitCodec() = default;
+    virtual std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const = 0;
+    // The samples that a decoder has of a file of the image, in the frame of the fit. mends_folds: as files do.
+    virtual std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) = 0;
+    // Mends the folds that the quantizer leaves in the bands of a file. Layouts without such a repair do nothing.
+    virtual void repair(Pyramid<int32_t>&, const Units&) {}
+};
+
+}  // namespace gim

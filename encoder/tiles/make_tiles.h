@@ -1,0 +1,27 @@
+// Runs the stages of the tiles: from a clean mesh to a sampled and fitted image on a base mesh of quads.
+// Maximo, Velho, Siqueira. Adaptive Multi-Chart and Multiresolution Mesh Representation. 2013. Section 4.
+#pragma once
+
+#include "encoder/base/result.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/image/geometry_image.h"
+#include "encoder/surface/mesh.h"
+#include "encoder/tiles/tile_image.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+struct MadeTiles {
+    TileImage tiles;
+    GeometryImage atlas;  // of the tiles, as atlas_of() lays them out
+    double stretch_efficiency = 0;
+    uint64_t folds_before_fit = 0;
+};
+
+// In:  a clean mesh with any number of components, boundaries and handles.
+// Out: about options.tiles (not 0) tiles, as fine as options.samples allows.
+// Cost: O(F log F), and the fit.
+Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
+                             const Observer& observer);
+
+}  // namespace gim

@@ -1,0 +1,101 @@
+#include "encoder/tiles/tiles_layout.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "encoder/code/file_units.h"
+#include "encoder/fit/fit_coded.h"
+#include "encoder/tiles/code_complex.h"
+#include "encoder/tiles/sample_tiles.h"
+#include "encoder/tiles/tile_codec.h"
+#include "encoder/tiles/write_tiles.h"
+#include "format/tile_atlas.h"
+
+namespace gim {
+
+namespace {
+
+class TilesLayout final : public LayoutImages {
+  public:
+    TilesLayout(MadeTiles made, std::vector<uint32_t> sample_at)
+        : made_(std::move(made)), sample_at_(std::move(sample_at)) {
+        take_samples();
+    }
+
+    Result<void> make_fit(const Mesh& mesh, uint64_t seed) {
+        Result<void> made;
+        const MakeFitCodec make = [&](const FitFrame& frame) -> std::unique_ptr<FitCodec> {
+            auto codec = TileCodec::make(made_.tiles, frame);
+            if (codec.ok()) return std::make_unique<TileCodec>(std::move(codec.value()));
+            made = codec.error();
+            return nullptr;
+        };
+        fit_.emplace(made_.atlas, make, mesh, seed);
+        return made;
+    }
+
+    void describe(EncodeReport& report) const override {
+        report.layout = Layout::kTiles;
+        report.images = 1;
+        report.width = made_.atlas.width();
+        report.height = made_.atlas.height();
+        report.samples = made_.tiles.positions.size();
+        report.tiles = static_cast<uint32_t>(made_.tiles.quads.size());
+        report.side = (1u << made_.tiles.exponent) + 1;
+    }
+
+    bool is_fitted_to_quantizer() const override { return fit_.has_value(); }
+
+    void fit(const CodingParameters& parameters, CodedFit::Effort effort, StageClock& clock) override {
+        clock.begin(Stage::kFit);
+        if (!units_) {
+            const auto units = tile_units(made_.tiles, parameters.bits);
+            units_ = units.value();  // the complex was checked when the fit was made
+        }
+        Units units = *units_;
+        units.quantizer = quantizer_in_range(parameters.quantizer);
+        made_.atlas.positions = fit_->run(units, effort, clock.progress());
+        take_samples();
+        clock.begin(Stage::kCode);
+    }
+
+    void restart_fit() override {
+        if (fit_) fit_->restart();
+    }
+
+    Result<FileWriter> writer(const CodingParameters& parameters) const override {
+        CodingParameters with_units = parameters;
+        with_units.units = units_;
+        return tiles_writer(made_.tiles, with_units);
+    }
+
+    std::vector<uint8_t> plane_exponents(uint32_t) const override { return {}; }
+    TexelGrid texel_grid(size_t, uint8_t) const override { return {}; }
+    Pyramid<float> analyse_plane(size_t, const TexelGrid&, std::vector<float>, float) const override { return {}; }
+
+  private:
+    // Takes the tiles' samples from the atlas.
+    void take_samples() {
+        for (size_t texel = 0; texel < sample_at_.size(); ++texel) {
+            if (sample_at_[texel] != kNone) made_.tiles.positions[sample_at_[texel]] = made_.atlas.positions[texel];
+        }
+    }
+
+    MadeTiles made_;
+    std::vector<uint32_t> sample_at_;  // per texel of the atlas
+    std::optional<CodedFit> fit_;
+    std::optional<Units> units_;  // of the first fit
+};
+
+}  // namespace
+
+Result<std::unique_ptr<LayoutImages>> tiles_layout(MadeTiles made, const Mesh& mesh, const EncodeOptions& options) {
+    GIM_TRY(sample_at, samples_of_atlas(made.tiles));
+    auto layout = std::make_unique<TilesLayout>(std::move(made), std::move(sample_at));
+    if (options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless)
+        GIM_CHECK(layout->make_fit(mesh, options.seed));
+    return std::unique_ptr<LayoutImages>(std::move(layout));
+}
+
+}  // namespace gim
