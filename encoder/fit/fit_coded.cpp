@@ -180,34 +180,70 @@ std::vector<uint32_t> classes_of(const SeamTable& seams, uint32_t side) {
     return classes;
 }
 
+// Squares: mates share their details, seams are fused, and folds can be repaired.
+class SquareCodec final : public FitCodec {
+  public:
+    SquareCodec(const SeamTable& seams, uint32_t side, const GridGluing& gluing, const FitReference& reference,
+                const FitFrame& frame, double front)
+        : side_(side),
+          seams_(seams),
+          ring_classes_(classes_of(seams, side)),
+          repair_(gluing, reference, frame, front, {CodedPart{side, side, 0, 0, &seams_, {}}}, fusing()) {}
+
+    std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override {
+        return std::make_unique<DetailBasis>(image, side_, coding, &seams_);
+    }
+
+    std::vector<Vec3> decoded(std::vector<float> image, const Units& units, const FitFrame&, bool repairs) override {
+        Pyramid<float> bands = analyse<Irreversible97>(std::move(image), side_, &seams_);
+        subtract_middle(&bands, units.bits);
+        Pyramid<int32_t> quantized = quantize_bands(bands, detail_coding_of(units), &seams_).bands;
+        if (repairs) repair_.repair({&quantized, 1}, units, kRepairBetween);
+        return repair_.decode({&quantized, 1}, units);
+    }
+
+    FoldRepair& repair() { return repair_; }
+
+  private:
+    CloseSeams fusing() const {
+        return [this](std::vector<float>& image) {
+            const size_t ring = ring_classes_.size();
+            const uint32_t classes = 1 + *std::max_element(ring_classes_.begin(), ring_classes_.end());
+            std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
+            std::vector<uint32_t> first(ring), members(ring);
+            fuse(side_, ring_classes_.data(), classes, image.data(),
+                 {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
+        };
+    }
+
+    uint32_t side_;
+    SeamTable seams_;  // as in the file
+    std::vector<uint32_t> ring_classes_;
+    FoldRepair repair_;
+};
+
 }  // namespace
 
 struct CodedFit::Impl {
-    Impl(const GeometryImage& start, const SeamTable& file_seams, const Mesh& mesh, uint64_t first_seed)
+    Impl(const GeometryImage& start, const Mesh& mesh, uint64_t first_seed)
         : gluing(start.gluing),
           frame(mesh),
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
           fitter(start.positions, reference, gluing, frame, {}),
           first_positions(fitter.positions()),
-          side(start.width()),
-          seams(file_seams),
-          ring_classes(classes_of(seams, side)),
-          seed(first_seed),
-          repair(gluing, reference, frame, fitter.front(), {CodedPart{side, side, 0, 0, &seams, {}}}, fusing()) {}
+          seed(first_seed) {}
 
     GridGluing gluing;
     FitFrame frame;
     FitReference reference;
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
-    uint32_t side;
-    SeamTable seams;  // as in the file
-    std::vector<uint32_t> ring_classes;
+    std::unique_ptr<FitCodec> codec;
+    SquareCodec* square = nullptr;  // the codec, if it is that of squares
     uint64_t seed;
     uint64_t rounds = 0;
     std::vector<Vec3> cycled_positions;  // from the last final fit, before its last rounds; in the frame
     uint64_t cycled_rounds = 0;
-    FoldRepair repair;
 
     void keep_as_cycled() {
         cycled_positions = fitter.positions();
@@ -242,39 +278,20 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const DetailBasis basis(image, side, coding, &seams);
-        const Coordinates c = basis.analyse(image);
+        const std::unique_ptr<ImageBasis> basis = codec->basis(image, coding);
+        const Coordinates c = basis->analyse(image);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
-        CoordinateSystem coordinates(system, basis, gluing);
-        const Coordinates y = minimise(coordinates, Prices(basis, c, coding.quantizer, free), c, 1 / unit);
+        CoordinateSystem coordinates(system, *basis, gluing);
+        const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
         for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
         fitter.take_step(step, true);
     }
 
-    Pyramid<int32_t> quantized(const Units& units) const {
-        Pyramid<float> bands = analyse<Irreversible97>(samples_in(units), side, &seams);
-        subtract_middle(&bands, units.bits);
-        return quantize_bands(bands, detail_coding_of(units), &seams).bands;
-    }
-
     // Moves samples to where a decoder would put them.
     void quantize(const Units& units, bool repairs) {
-        Pyramid<int32_t> bands = quantized(units);
-        if (repairs) repair.repair({&bands, 1}, units, kRepairBetween);
-        fitter.place(repair.decode({&bands, 1}, units));
-    }
-
-    CloseSeams fusing() const {
-        return [this](std::vector<float>& image) {
-            const size_t ring = ring_classes.size();
-            const uint32_t classes = 1 + *std::max_element(ring_classes.begin(), ring_classes.end());
-            std::vector<float> sums(3 * ring), outer(3 * ring), inner(3 * ring);
-            std::vector<uint32_t> first(ring), members(ring);
-            fuse(side, ring_classes.data(), classes, image.data(),
-                 {sums.data(), first.data(), members.data(), outer.data(), inner.data()});
-        };
+        fitter.place(codec->decoded(samples_in(units), units, frame, repairs));
     }
 };
 
@@ -283,12 +300,22 @@ CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
 CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, seams, reference, seed)) {}
+    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+    auto square = std::make_unique<SquareCodec>(seams, start.width(), impl_->gluing, impl_->reference, impl_->frame,
+                                                impl_->fitter.front());
+    impl_->square = square.get();
+    impl_->codec = std::move(square);
+}
+
+CodedFit::CodedFit(const GeometryImage& start, std::unique_ptr<FitCodec> codec, const Mesh& reference, uint64_t seed)
+    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+    impl_->codec = std::move(codec);
+}
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
 void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) {
-    impl_->repair.repair({&bands, 1}, units, kLastRepair);
+    if (impl_->square) impl_->square->repair().repair({&bands, 1}, units, kLastRepair);
 }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {

@@ -14,6 +14,7 @@
 
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/fit.h"
+#include "encoder/fit/fit_codec.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
@@ -26,6 +27,8 @@ class CodedFit {
     // Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their details. `seed`
     // decides where distances are sampled.
     CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
+    // The same for an image of another layout, coded by `codec`. Samples that are one surface point share a class.
+    CodedFit(const GeometryImage& start, std::unique_ptr<FitCodec> codec, const Mesh& reference, uint64_t seed);
     ~CodedFit();
     CodedFit(CodedFit&&) noexcept;
     CodedFit& operator=(CodedFit&&) noexcept;
@@ -39,7 +42,7 @@ class CodedFit {
     // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
     // number of threads. Cost: 5, 29 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
-    // Repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
+    // Squares: repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
     void repair(Pyramid<int32_t>& bands, const Units& units);
     // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();

@@ -198,7 +198,8 @@ std::vector<typename Wavelet::Sample> restore_tiles(const QuadComplex& complex,
 
 template <class Wavelet>
 TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape& shape,
-                                    const TilePyramid<float>& pyramid, const DetailCoding& coding) {
+                                    const TilePyramid<float>& pyramid, const DetailCoding& coding,
+                                    std::vector<float>* decoded) {
     TilePyramid<int32_t> out;
     const uint32_t steps = pyramid.steps();
     const float base_step = tile_base_step(shape, coding.quantizer);
@@ -213,8 +214,10 @@ TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape&
         const TilePlanes planes(1u << (step - 1));
         const DetailSteps detail_steps = tile_steps_at(shape, coding, steps - step + 1);
         out.details.push_back(StepQuantizer(complex, planes, detail_steps, samples).run(pyramid.details[step - 1]));
-        if (step < steps) samples = synthesize_step<Wavelet>(complex, planes, false, std::move(samples));
+        if (step < steps || decoded)
+            samples = synthesize_step<Wavelet>(complex, planes, step == steps, std::move(samples));
     }
+    if (decoded) *decoded = std::move(samples);
     return out;
 }
 
@@ -227,8 +230,9 @@ template std::vector<int32_t> restore_tiles<Tiles53>(const QuadComplex&, const T
 template std::vector<float> restore_tiles<Tiles97>(const QuadComplex&, const TilePyramid<float>&);
 template std::vector<float> restore_tiles<TilesSharp>(const QuadComplex&, const TilePyramid<float>&);
 template TilePyramid<int32_t> quantize_tiles<Tiles97>(const QuadComplex&, const TileShape&, const TilePyramid<float>&,
-                                                      const DetailCoding&);
+                                                      const DetailCoding&, std::vector<float>*);
 template TilePyramid<int32_t> quantize_tiles<TilesSharp>(const QuadComplex&, const TileShape&,
-                                                         const TilePyramid<float>&, const DetailCoding&);
+                                                         const TilePyramid<float>&, const DetailCoding&,
+                                                         std::vector<float>*);
 
 }  // namespace gim

@@ -71,9 +71,11 @@ std::vector<typename Wavelet::Sample> restore_tiles(const QuadComplex& complex,
                                                     const TilePyramid<typename Wavelet::Sample>& pyramid);
 
 // Rounds base and details to multiples of their steps. Frames of details come from the image that a decoder has at that
-// step. Details on edges are right in the tile of the lower half-edge only.
+// step. Details on edges are right in the tile of the lower half-edge only. decoded: receives the grids that a decoder
+// makes of it, or nullptr.
 template <class Wavelet>
 TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape& shape,
-                                    const TilePyramid<float>& pyramid, const DetailCoding& coding);
+                                    const TilePyramid<float>& pyramid, const DetailCoding& coding,
+                                    std::vector<float>* decoded = nullptr);
 
 }  // namespace gim
