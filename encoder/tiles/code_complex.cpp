@@ -106,20 +106,9 @@ std::vector<uint32_t> coded_samples(const CodedComplex& coded, const QuadComplex
     const TileSamples samples(complex, side);
     std::vector<uint32_t> grid;
     grid.reserve(size_t{complex.tiles} * (side + 1) * (side + 1));
-    for (uint32_t t = 0; t < complex.tiles; ++t) {
-        const uint32_t first = coded.half_edges[4 * t], tile = tile_of(first);
-        for (uint32_t row = 0; row <= side; ++row) {
-            for (uint32_t column = 0; column <= side; ++column) {
-                uint32_t r = row, c = column;
-                for (uint32_t k = side_of(first); k > 0; --k) {  // turns the tile by a quarter
-                    const uint32_t turned = side - r;
-                    r = c;
-                    c = turned;
-                }
-                grid.push_back(samples.at(tile, r, c));
-            }
-        }
-    }
+    for_each_coded_sample(coded, side, [&](uint32_t tile, uint32_t row, uint32_t column) {
+        grid.push_back(samples.at(tile, row, column));
+    });
     return grid;
 }
 

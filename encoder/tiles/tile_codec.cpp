@@ -11,22 +11,15 @@ namespace gim {
 
 namespace {
 
-// Where a tile of the code has its samples in the atlas of the image. Corner 0 of the tile is a corner of the image's.
+// Where a tile of the code has its samples in the atlas of the image.
 std::vector<uint32_t> texels_of(const CodedComplex& coded, uint32_t side) {
     const uint32_t tiles = coded.complex.view().tiles;
     const TileAtlas atlas(tiles, side);
     std::vector<uint32_t> texels;
     texels.reserve(tiles * size_t{side + 1} * (side + 1));
-    for (uint32_t tile = 0; tile < tiles; ++tile) {
-        const uint32_t first = coded.half_edges[4 * size_t{tile}], own = first / 4, quarters = first % 4;
-        for (uint32_t row = 0; row <= side; ++row) {
-            for (uint32_t column = 0; column <= side; ++column) {
-                uint32_t u = column, v = row;
-                for (uint32_t q = 0; q < quarters; ++q) u = std::exchange(v, u), u = side - u;
-                texels.push_back((atlas.row(own) + v) * atlas.width() + atlas.column(own) + u);
-            }
-        }
-    }
+    for_each_coded_sample(coded, side, [&](uint32_t tile, uint32_t row, uint32_t column) {
+        texels.push_back((atlas.row(tile) + row) * atlas.width() + atlas.column(tile) + column);
+    });
     return texels;
 }
 

@@ -82,8 +82,7 @@ class TileMapper {
   private:
     void refresh_metrics(uint32_t v) {
         metric_.resize(mesh_.face_count());
-        mesh_.for_each_outgoing(
-            v, [&](uint32_t h) { metric_[face_of(h)] = metrics_.of(mesh_.triangle(face_of(h))); });
+        mesh_.for_each_outgoing(v, [&](uint32_t h) { metric_[face_of(h)] = metrics_.of(mesh_.triangle(face_of(h))); });
     }
 
     void load_star(uint32_t v) {
@@ -100,9 +99,7 @@ class TileMapper {
         }
     }
 
-    int axis_of(uint32_t v) const {
-        return freedom_[v] == Freedom::kSlides ? mesh_.side_axis(v) : kAnyDirection;
-    }
+    int axis_of(uint32_t v) const { return freedom_[v] == Freedom::kSlides ? mesh_.side_axis(v) : kAnyDirection; }
 
     StarDescent relax(uint32_t v, int steps) {
         load_star(v);
@@ -246,8 +243,8 @@ Result<std::vector<std::vector<uint32_t>>> rings_of(FlatMesh mesh, const std::ve
     std::vector<std::vector<uint32_t>> rings(collapses.size());
     for (size_t k = collapses.size(); k-- > 0;) {
         if (!mesh.split(collapses[k], {}))
-            return Error{Stage::kParametrize, "collapse " + std::to_string(k) +
-                                                  " cannot be undone; this is an error of the program"};
+            return Error{Stage::kParametrize,
+                         "collapse " + std::to_string(k) + " cannot be undone; this is an error of the program"};
         rings[k] = mesh.last_ring();
     }
     return rings;

@@ -20,6 +20,9 @@
  *                     A level of the file leaves out the images that are too small for it.
  *   GIM_LAYOUT_MCGIM  One image. Charts are packed into its rectangle; samples outside them are undefined. Level L
  *                     keeps every 2^L-th row and column of each chart.
+ *   GIM_LAYOUT_TILES  One image. Square tiles of side x side samples, side = 2^k + 1, are glued along their sides. In the
+ *                     image they lie in slots of a rectangle, tile after tile; samples of slots without a tile are
+ *                     undefined. Level L has tiles of side 2^(k-L) + 1.
  * Seams are where the surface was cut open to lie in the plane. Decoding closes them: the mesh is watertight where the
  * surface is.
  * Seen from outside the surface, rows and columns turn the same way in every layout:
@@ -56,7 +59,6 @@ enum {
 /* A short English description of any status; never NULL. */
 GIM_API const char* gim_status_text(gim_status status);
 
-/* GIM_LAYOUT_TILES is reserved: no version reads it yet. */
 enum { GIM_LAYOUT_GIM = 0, GIM_LAYOUT_MCGIM = 1, GIM_LAYOUT_TILES = 2 };
 enum { GIM_CODING_LOSSLESS = 0, GIM_CODING_LOSSY = 1 };
 enum { GIM_MAX_LEVELS = 14 };
@@ -74,7 +76,7 @@ typedef struct gim_info {
     uint32_t layout;       /* GIM_LAYOUT_... */
     uint32_t coding;       /* GIM_CODING_... */
     uint32_t bits;         /* quantizer: bits per coordinate of the bounding box, 8..20 */
-    uint32_t image_count;  /* GIM_LAYOUT_MCGIM: 1 */
+    uint32_t image_count;  /* GIM_LAYOUT_GIM: any; else 1 */
     uint32_t level_count;  /* levels stored; an image has levels 0 .. gim_level_info.coarsest_level */
     uint32_t chunk_count;  /* for gim_read_chunk */
     uint64_t sample_count; /* of all images at level 0, undefined ones included */
@@ -107,17 +109,17 @@ typedef struct gim_level_info {
 } gim_level_info;
 
 /* level: 0 = full resolution. Returns GIM_NO_SUCH_LEVEL beyond coarsest_level. Reads the chunk of seams (SEAM), so
- * `size` must reach beyond it. Cost: GIM_LAYOUT_GIM O(chunk + side), GIM_LAYOUT_MCGIM O(chunk). */
+ * `size` must reach beyond it. Cost: GIM_LAYOUT_GIM O(chunk + side), else O(chunk). */
 GIM_API gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                        uint32_t level, gim_level_info* level_info);
 
 /* Decodes one level of one image into its grid.
  * positions  width*height*3 floats, row by row, in object units; relative to gim_info.origin if is_relative. Samples of
  *            one surface point are bit-equal; the correction that made them so fades out into the interior. Undefined
- *            samples (GIM_LAYOUT_MCGIM) are NaN
+ *            samples (not GIM_LAYOUT_GIM) are NaN
  * scratch    scratch_size bytes, aligned to 16 bytes; their contents are undefined afterwards
  * GIM_LAYOUT_MCGIM: at level 0 the grid is the rectangle that the charts are packed into. At other levels the charts
- * lie beside each other in a grid of its own.
+ * lie beside each other in a grid of its own. GIM_LAYOUT_TILES: samples on the side of a tile are repeated in each tile.
  * Reads only the first prefix_size bytes. On failure positions are unspecified. Cost O(samples). The floats are the
  * same bits on every platform. */
 GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes, size_t size, uint32_t image,
@@ -127,14 +129,14 @@ GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes,
  * NULL.
  * positions  vertex_count*3 floats, in object units, relative as in gim_decode_positions. GIM_LAYOUT_GIM: first the
  *            vertices of the image's rim, then the inner samples row by row. GIM_LAYOUT_MCGIM: chart after chart, each
- *            row by row; a vertex comes where
- *            its first sample is
+ *            row by row; a vertex comes where its first sample is. GIM_LAYOUT_TILES: corners of tiles, then the inner
+ *            samples of their sides, then those of the tiles row by row
  * normals    vertex_count*3 floats of unit length; 0 0 0 where the surface has no normal
  * texcoords  vertex_count*2 floats: u = column / (width-1), v = row / (height-1) in the grid of level 0, at every
  *            level. A vertex on a seam has those of its first sample. GIM_LAYOUT_MCGIM: coarse levels may reach beyond
  *            0..1
  * triangles  triangle_count*3 indices, counter-clockwise seen from outside. Quads are split along the shorter diagonal,
- *            except where that would give the mesh an edge twice (spec, "Surface", "Charts") */
+ *            except where that would give the mesh an edge twice (spec, "Surface", "Charts", "Tiles") */
 GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                    float* positions, float* normals, float* texcoords, uint32_t* triangles,
                                    void* scratch, size_t scratch_size);
@@ -153,7 +155,7 @@ GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size
  *   GIM_PLANE_NORMALS  the input's unit normals in object space, pointing out of the surface; 0 0 0 where undefined
  *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB
  * GIM_LAYOUT_GIM: samples of one surface point are bit-equal. GIM_LAYOUT_MCGIM: between the charts the values go on
- * smoothly, so that a texture filter may read them. */
+ * smoothly, so that a texture filter may read them. GIM_LAYOUT_TILES: none yet; GIM_UNSUPPORTED_VERSION. */
 enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
 typedef struct gim_plane_info {
     uint32_t width, height;  /* samples at this level of the plane */
@@ -198,7 +200,8 @@ GIM_API gim_status gim_read_text(const gim_info* info, const void* bytes, size_t
  * class_of    GIM_LAYOUT_GIM: 4*(side-1) entries, one per sample of the rim, along row 0, down the last column, back
  *             along the last row and up column 0. Samples of one surface point have equal numbers. NULL if not wanted;
  *             it must be NULL in other layouts
- * path_count  receives how many paths the seams have: of the cut, or of the charts' borders. NULL if not wanted */
+ * path_count  receives how many paths the seams have: of the cut, of the charts' borders, or sides of tiles (two that are
+ *             glued count once). NULL if not wanted */
 GIM_API gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                   uint32_t* class_of, uint32_t* path_count);
 
