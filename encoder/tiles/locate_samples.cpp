@@ -19,11 +19,7 @@ constexpr double kRounding = -1e-6;
 class Locator {
   public:
     Locator(const TileWalker& walker, const TileSamples& samples, uint32_t side)
-        : walker_(walker),
-          samples_(samples),
-          side_(side),
-          found_(samples.count()),
-          best_(samples.count(), kRounding) {}
+        : walker_(walker), samples_(samples), side_(side), found_(samples.count()), best_(samples.count(), kRounding) {}
 
     // Takes the samples that triangle f covers.
     void convert(uint32_t f, const TileTriangle& triangle) {
@@ -52,7 +48,7 @@ class Locator {
     uint32_t sample_at(const TileTriangle& triangle, const Vec2& inside, const Vec2& p) const {
         const auto frame = walker_.walk(triangle.tile, inside, p);
         if (!frame) return kNone;
-        const Vec2 at = (*frame)(p) * side_;
+        const Vec2 at = (*frame)(p)*side_;
         return samples_.at(frame->tile, static_cast<uint32_t>(at.y()), static_cast<uint32_t>(at.x()));
     }
 

@@ -87,8 +87,8 @@ Result<std::vector<FlatFace>> start_map(const std::vector<Triangle>& triangles, 
     std::vector<std::vector<uint32_t>> members(quads.size());
     for (uint32_t f = 0; f < triangles.size(); ++f) {
         if (tile[f] == kNone)
-            return Error{Stage::kParametrize, "base triangle " + std::to_string(f) +
-                                                  " belongs to no tile; this is an error of the program"};
+            return Error{Stage::kParametrize,
+                         "base triangle " + std::to_string(f) + " belongs to no tile; this is an error of the program"};
         faces[f].tile = tile[f];
         members[tile[f]].push_back(f);
     }

@@ -43,13 +43,13 @@ struct TileTriangle {
 };
 
 struct TileMap {
-    std::vector<Quad> quads;            // as given; but see `swapped`
-    std::vector<Triangle> triangles;    // those of the mesh, in their order, unless vertices are left out
-    std::vector<TileTriangle> placed;   // per triangle: counter-clockwise; edges are as long as on the other side
-    std::vector<TilePlace> places;      // per vertex; of several tiles that share it, any one
-    std::vector<uint32_t> left_out;     // vertices without a place: the triangles do without them
-    size_t stray = 0;                   // vertices of creases that lie beside the borders of their tiles
-    uint32_t swapped = 0;               // vertices that took a base vertex's place at the corners of tiles
+    std::vector<Quad> quads;           // as given; but see `swapped`
+    std::vector<Triangle> triangles;   // those of the mesh, in their order, unless vertices are left out
+    std::vector<TileTriangle> placed;  // per triangle: counter-clockwise; edges are as long as on the other side
+    std::vector<TilePlace> places;     // per vertex; of several tiles that share it, any one
+    std::vector<uint32_t> left_out;    // vertices without a place: the triangles do without them
+    size_t stray = 0;                  // vertices of creases that lie beside the borders of their tiles
+    uint32_t swapped = 0;              // vertices that took a base vertex's place at the corners of tiles
 };
 
 // In:  the mesh, its base mesh (base_mesh.h), and tiles made of the base triangles.
