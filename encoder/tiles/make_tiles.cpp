@@ -11,6 +11,7 @@
 #include "encoder/surface/stretch.h"
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/sample_tiles.h"
+#include "encoder/tiles/split_chords.h"
 #include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_map.h"
 #include "format/tile_atlas.h"
@@ -37,6 +38,7 @@ struct TiledSurface {
 Result<TiledSurface> find_base(const Mesh& mesh, uint32_t tiles) {
     TiledSurface made;
     made.input = make_room_for_tiles(mesh, {});
+    split_chords(made.input.mesh, made.input.sharp);
     const BaseHierarchy hierarchy(made.input.mesh, made.input.sharp);
     made.base = make_tile_base(made.input, hierarchy, 2 * tiles);
     if (!made.base.pairing.unpaired.empty()) {

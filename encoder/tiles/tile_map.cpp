@@ -313,10 +313,20 @@ Result<TileMap> map_tiles(const Mesh& dense, const BaseMesh& base, const std::ve
     for (const Quad& quad : quads) {
         for (const uint32_t v : quad) freedom[v] = Freedom::kPinned;
     }
+    std::vector<std::array<uint32_t, 2>> creases;
+    for (const auto& [a, b] : base.creases) creases.push_back({std::min(a, b), std::max(a, b)});
+    std::sort(creases.begin(), creases.end());
     for (uint32_t h = 0; h < 3 * mesh.face_count(); ++h) {
         if (mesh.twin(h) == kNone) mesh.mark_side(h);
     }
-    for (const auto& [a, b] : base.creases) mesh.mark_side(mesh.half_edge_between(a, b));
+    for (const Quad& quad : quads) {  // creases that cross a tile bind nothing
+        for (size_t i = 0; i < 4; ++i) {
+            const std::array<uint32_t, 2> side{std::min(quad[i], quad[(i + 1) % 4]),
+                                               std::max(quad[i], quad[(i + 1) % 4])};
+            const bool crease = std::binary_search(creases.begin(), creases.end(), side);
+            if (crease) mesh.mark_side(mesh.half_edge_between(quad[i], quad[(i + 1) % 4]));
+        }
+    }
     GIM_TRY(rings, rings_of(mesh, base.collapses));
 
     std::vector<Quad> corners = quads;

@@ -1,0 +1,135 @@
+#include "encoder/tiles/tile_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "encoder/surface/stretch.h"
+#include "tests/encoder/tiles/mapped_meshes.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kTiles = 40;
+
+double squared_length(const TileTriangle& t, size_t i) { return (t.corners[(i + 1) % 3] - t.corners[i]).squaredNorm(); }
+
+bool on_border(const TilePlace& p) { return p.uv.x() == 0 || p.uv.x() == 1 || p.uv.y() == 0 || p.uv.y() == 1; }
+
+TEST(TileMap, IsOneToOneOnEverySurface) {
+    for (const NamedMesh& m : surfaces()) {
+        const MappedMesh made = mapped(m.mesh, kTiles);
+        if (!made.base.pairing.unpaired.empty()) continue;  // a fault of the base
+        const TileMap& map = made.map;
+        ASSERT_FALSE(map.triangles.empty()) << m.name;
+        double area = 0;
+        for (const TileTriangle& t : map.placed) {
+            const double twice = twice_signed_area(t.corners[0], t.corners[1], t.corners[2]);
+            ASSERT_GT(twice, 0) << m.name;
+            area += 0.5 * twice;
+            const Vec2 centroid = (t.corners[0] + t.corners[1] + t.corners[2]) / 3;
+            ASSERT_TRUE((centroid.array() >= 0).all() && (centroid.array() <= 1).all()) << m.name;
+        }
+        // Together the triangles cover the tiles exactly once.
+        EXPECT_NEAR(area, static_cast<double>(map.quads.size()), 1e-9 * area) << m.name;
+        // Both sides of an edge agree, although they lie in different frames.
+        const Topology topology = build_topology({made.input.mesh.positions, map.triangles});
+        for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+            if (topology.twin[h] == kNone) continue;
+            ASSERT_EQ(squared_length(map.placed[h / 3], h % 3),
+                      squared_length(map.placed[topology.twin[h] / 3], topology.twin[h] % 3))
+                << m.name;
+        }
+    }
+}
+
+TEST(TileMap, KeepsTheTrianglesOfClosedSurfaces) {
+    for (const NamedMesh& m : connected_meshes()) {
+        if (m.boundary_loops != 0) continue;
+        const MappedMesh made = mapped(m.mesh, kTiles);
+        EXPECT_TRUE(made.map.left_out.empty()) << m.name;
+        EXPECT_EQ(made.map.triangles, made.input.mesh.triangles) << m.name;
+    }
+}
+
+TEST(TileMap, LeavesOutFewVerticesAtBoundaries) {
+    for (const NamedMesh& m : connected_meshes()) {
+        if (m.boundary_loops == 0) continue;
+        const MappedMesh made = mapped(m.mesh, kTiles);
+        if (!made.base.pairing.unpaired.empty()) continue;
+        EXPECT_LE(made.map.left_out.size(), made.input.mesh.positions.size() / 5) << m.name;
+        const Topology topology = build_topology({made.input.mesh.positions, made.map.triangles});
+        for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+            if (topology.twin[h] != kNone) continue;
+            const uint32_t v = made.map.triangles[h / 3][h % 3];
+            EXPECT_TRUE(on_border(made.map.places[v])) << m.name;
+        }
+    }
+}
+
+TEST(TileMap, CornersOfTilesAreVertices) {
+    const MappedMesh made = mapped(clean(corpus::limbed_blob(24)).value().mesh, kTiles);
+    for (const Quad& quad : made.map.quads) {
+        for (const uint32_t v : quad) {
+            const Vec2& uv = made.map.places[v].uv;
+            EXPECT_TRUE((uv.x() == 0 || uv.x() == 1) && (uv.y() == 0 || uv.y() == 1));
+            const Quad& there = made.map.quads[made.map.places[v].tile];
+            EXPECT_NE(std::find(there.begin(), there.end(), v), there.end());
+        }
+    }
+}
+
+TEST(TileMap, CreasesLieOnBordersOfTiles) {
+    const MappedMesh made = mapped(clean(corpus::box(12, 1, 1)).value().mesh, 24, 1.0);
+    const Mesh& mesh = made.input.mesh;
+    ASSERT_TRUE(made.base.pairing.crossed.empty());
+    size_t creases = 0, beside = 0;
+    for (uint32_t h = 0; h < made.input.sharp.size(); ++h) {
+        if (!made.input.sharp[h]) continue;
+        ++creases;
+        beside += !on_border(made.map.places[from(mesh, h)]);
+    }
+    EXPECT_GT(creases, 100u);
+    EXPECT_EQ(beside, 0u);
+    EXPECT_EQ(made.map.stray, 0u);
+}
+
+TEST(TileMap, SpreadsTheSurfaceEvenly) {
+    const MappedMesh made = mapped(clean(corpus::sphere(30)).value().mesh, kTiles);
+    EXPECT_GT(stretch_efficiency(made.input.mesh.positions, made.map), 0.7);
+}
+
+TEST(TileMap, ImportanceDrawsTilesToIt) {
+    const Mesh mesh = clean(corpus::sphere(30)).value().mesh;
+    TileMapOptions options;
+    for (const Vec3& p : mesh.positions) options.importance.push_back(p.x() > 0 ? 16 : 1);
+    const MappedMesh made = mapped(mesh, kTiles, 0, options);
+    double wanted = 0, other = 0;
+    for (size_t f = 0; f < made.map.triangles.size(); ++f) {
+        const auto& at = made.map.placed[f].corners;
+        const double x = made.input.mesh.positions[made.map.triangles[f][0]].x();
+        (x > 0 ? wanted : other) += twice_signed_area(at[0], at[1], at[2]);
+    }
+    EXPECT_GT(wanted, 1.3 * other);
+}
+
+TEST(TileMap, IsTheSameEachTime) {
+    const Mesh mesh = clean(corpus::torus(30, 15, 1, 0.4)).value().mesh;
+    const MappedMesh a = mapped(mesh, kTiles), b = mapped(mesh, kTiles);
+    for (size_t v = 0; v < a.map.places.size(); ++v) EXPECT_EQ(a.map.places[v].uv, b.map.places[v].uv);
+}
+
+TEST(TileMap, RefusesTilesThatAreNotOfTheBase) {
+    const Mesh mesh = clean(corpus::torus(30, 15, 1, 0.4)).value().mesh;
+    MappedMesh made = mapped(mesh, kTiles);
+    std::vector<Quad> quads = made.base.pairing.quads;
+    quads.pop_back();
+    EXPECT_FALSE(map_tiles(made.input.mesh, made.base.base, quads, {}).ok());
+    BaseMesh spoiled = made.base.base;
+    std::swap(spoiled.collapses.back().left, spoiled.collapses.back().right);
+    EXPECT_FALSE(map_tiles(made.input.mesh, spoiled, made.base.pairing.quads, {}).ok());
+}
+
+}  // namespace
+}  // namespace gim
