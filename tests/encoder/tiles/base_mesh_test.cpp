@@ -106,7 +106,9 @@ TEST(BaseMesh, CreaseVerticesMoveAlongTheirCreases) {
         if (!sharp[h]) continue;
         const Vec3 along = (mesh.positions[to(mesh, h)] - mesh.positions[from(mesh, h)]).normalized();
         const Vec3 moved = mesh.positions[into[from(mesh, h)]] - mesh.positions[from(mesh, h)];
-        if (base.kinds[from(mesh, h)] == VertexKind::kCorner) EXPECT_EQ(moved.norm(), 0);
+        if (base.kinds[from(mesh, h)] == VertexKind::kCorner) {
+            EXPECT_EQ(moved.norm(), 0);
+        }
         EXPECT_LT(moved.cross(along).norm(), 1e-9);
     }
 }
