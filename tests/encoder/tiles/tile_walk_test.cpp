@@ -10,7 +10,8 @@ namespace {
 // The six sides of a cube; every corner is a cone of three tiles.
 TileWalker cube() {
     const std::vector<Quad> quads{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-    const OwnComplex complex = complex_of(quads, 8).value();
+    const auto made = complex_of(quads, 8);
+    const OwnComplex& complex = made.value();
     return TileWalker({complex.view().mate, complex.view().mate + complex.view().half_edges()});
 }
 
@@ -43,7 +44,8 @@ TEST(TileWalk, RefusesAWayThroughACorner) {
 }
 
 TEST(TileWalk, RefusesAWayOffTheSurface) {
-    const OwnComplex complex = complex_of({{0, 1, 2, 3}}, 4).value();
+    const auto made = complex_of({{0, 1, 2, 3}}, 4);
+    const OwnComplex& complex = made.value();
     const TileWalker walker({complex.view().mate, complex.view().mate + 4});
     EXPECT_FALSE(walker.walk(0, {0.5, 0.5}, {1.5, 0.5}));
     EXPECT_TRUE(walker.walk(0, {0.5, 0.5}, {1, 0.5}));
