@@ -292,10 +292,4 @@ double CollapseCost::damage(HalfedgeHandle h) {
     return std::max(0.0, mine.planes(spokes_[onto].at)) + kTipWeight * mine.area * squared_gap(onto);
 }
 
-double CollapseCost::fan_angle(HalfedgeHandle h) {
-    gather(mesh_.from_vertex_handle(h));
-    const auto onto = std::find(outgoing_.begin(), outgoing_.end(), h);
-    return fan(static_cast<size_t>(onto - outgoing_.begin()));
-}
-
 }  // namespace gim

@@ -56,9 +56,6 @@ class CollapseCost {
     // How far the surface moves, as area times squared distance: a part of the cost.
     double damage(OpenMesh::HalfedgeHandle h);
 
-    // The angle at into of the faces that the collapse leaves in place of vertex's, in radians.
-    double fan_angle(OpenMesh::HalfedgeHandle h);
-
   private:
     struct Spoke {
         OpenMesh::HalfedgeHandle edge;
@@ -84,6 +81,7 @@ class CollapseCost {
     double valence_factor(size_t onto) const;
     // Whether the collapse leaves faces that cannot be paired without a vertex of two quads.
     bool makes_doublet(size_t onto);
+    // The angle at the kept vertex of the faces that take the place of the old ones, in radians.
     double fan(size_t onto) const;
     // Nothing if it is forbidden, or costs no less than `limit`.
     std::optional<double> cost(size_t onto, Rules rules, double limit);

@@ -3,7 +3,7 @@
 namespace gim {
 
 // OpenMesh's own add_face() searches for its neighbours and prints where it finds none. The twins are known here.
-CollapseMesh::CollapseMesh(const Mesh& mesh, const std::vector<bool>& sharp) {
+CollapseMesh::CollapseMesh(const Mesh& mesh, const std::vector<bool>& sharp) : places_(mesh.positions) {
     const Topology topology = build_topology(mesh);
     const auto faces = static_cast<uint32_t>(mesh.triangles.size());
     reserve(mesh.positions.size(), 3 * faces / 2 + 1, faces);

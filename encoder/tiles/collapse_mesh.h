@@ -25,7 +25,8 @@ class CollapseMesh : public OpenMesh::TriMesh_ArrayKernelT<CollapseTraits> {
     // In: an oriented 2-manifold; per half-edge 3f+i whether it lies on a crease (empty: no creases). O(F log F).
     CollapseMesh(const Mesh& mesh, const std::vector<bool>& sharp);
 
-    Vec3 place(VertexHandle v) const { return {point(v)[0], point(v)[1], point(v)[2]}; }
+    // The kernel's own point() looks its property up each time.
+    const Vec3& place(VertexHandle v) const { return places_[static_cast<size_t>(v.idx())]; }
     bool is_crease(EdgeHandle e) const { return crease_[static_cast<size_t>(e.idx())] != 0; }
     bool is_feature(EdgeHandle e) const { return is_crease(e) || is_boundary(e); }
     // Numbers of features and of edges that end at v.
@@ -52,6 +53,7 @@ class CollapseMesh : public OpenMesh::TriMesh_ArrayKernelT<CollapseTraits> {
     void count_around(VertexHandle v);
 
     std::vector<HalfedgeHandle> handles_;     // per half-edge of the input, while it is built
+    std::vector<Vec3> places_;                // per vertex
     std::vector<uint8_t> crease_;             // per edge
     std::vector<uint32_t> features_, edges_;  // per vertex
 };

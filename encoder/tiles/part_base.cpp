@@ -136,6 +136,8 @@ PartBase choose_part_base(const PartMesh& part, uint32_t count) {
         wanted -= (part.collapses[i].left != kNone) + (part.collapses[i].right != kNone);
     const uint32_t most = std::clamp(kFacesTried / faces, 4u, kMostTries);
     for (uint32_t i = 1; i <= most && best.faults > 0; ++i) {
+        // A boundary with too many corners leaves triangles alone, and a coarser one has fewer.
+        if (!best.pairing.unpaired.empty()) wanted -= std::min(wanted, wanted / 8 + 1);
         Try now = tries.vary(best, wanted + 2 * (i / kTriesPerSize), i);
         if (now.better_than(best)) best = std::move(now);
     }
