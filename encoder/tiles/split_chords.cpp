@@ -18,10 +18,10 @@ std::vector<uint8_t> features_of(const Topology& topology, const std::vector<boo
     return feature;
 }
 
-// A face, and which of its edges are features.
+// A face, and which of its edges are creases.
 struct Part {
     Triangle corners;
-    std::array<bool, 3> feature;
+    std::array<bool, 3> crease;
 };
 
 // Cuts a part from the middle of its edge i to the opposite corner.
@@ -52,11 +52,12 @@ void split_chords(Mesh& mesh, std::vector<bool>& sharp) {
     std::vector<bool> marks(feature.size());
     const auto store = [&](uint32_t f, const Part& part) {
         mesh.triangles[f] = part.corners;
-        for (size_t i = 0; i < 3; ++i) marks[3 * f + i] = part.feature[i];
+        for (size_t i = 0; i < 3; ++i) marks[3 * f + i] = part.crease[i];
     };
     for (uint32_t f = 0; f < feature.size() / 3; ++f) {
         const uint32_t h = 3 * f;
-        std::vector<Part> parts{{mesh.triangles[f], {feature[h] != 0, feature[h + 1] != 0, feature[h + 2] != 0}}};
+        const auto crease = [&](uint32_t e) { return feature[e] != 0 && topology.twin[e] != kNone; };
+        std::vector<Part> parts{{mesh.triangles[f], {crease(h), crease(h + 1), crease(h + 2)}}};
         for (uint32_t side = 0; side < 3; ++side) {
             if (middle[h + side] == kNone) continue;
             const uint32_t a = from(mesh, h + side), b = to(mesh, h + side);

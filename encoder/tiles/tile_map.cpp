@@ -172,21 +172,38 @@ class TileMapper {
                trade_places(collapse.vertex, collapse.into, Freedom::kStray);
     }
 
-    // Moves a stray vertex back to the side of its tile if its neighbours are there and its star has room.
+    // Moves a stray vertex back to the side of its tile if a neighbour is there and its star has room.
     void return_to_side(uint32_t v) {
         load_star(v);
-        std::array<Vec2, 2> ends;
-        size_t count = 0;
+        std::vector<uint32_t> neighbours;
+        std::vector<Vec2> ends;
         for (const Spoke& spoke : spokes_) {
             if (!mesh_.is_side(spoke.half_edge)) continue;
-            if (count == 2 || freedom_[mesh_.target(spoke.half_edge)] == Freedom::kStray) return;
-            ends[count++] = spoke.p1;
+            neighbours.push_back(mesh_.target(spoke.half_edge));
+            ends.push_back(spoke.p1);
         }
-        if (count != 2) return;
-        const Vec2 at = mesh_.place(spokes_.front().half_edge) + ends[0];
-        const bool upright = ends[0].x() == ends[1].x() && at.x() == std::floor(at.x());
-        const bool level = ends[0].y() == ends[1].y() && at.y() == std::floor(at.y());
-        if ((upright || level) && place_between(v, ends[0], ends[1])) freedom_[v] = Freedom::kSlides;
+        if (neighbours.size() != 2) return;
+        for (size_t i = 0; i < 2; ++i) {
+            if (freedom_[neighbours[i]] == Freedom::kStray) continue;
+            const bool both = freedom_[neighbours[1 - i]] != Freedom::kStray;
+            const Vec2 beyond = both ? ends[1 - i] : beyond_on_side(neighbours[i], ends[i]);
+            const Vec2 at = mesh_.place(spokes_.front().half_edge) + ends[i];
+            const bool upright = ends[i].x() == beyond.x() && at.x() == std::floor(at.x());
+            const bool level = ends[i].y() == beyond.y() && at.y() == std::floor(at.y());
+            if (upright == level || !place_between(v, ends[i], beyond)) continue;
+            freedom_[v] = Freedom::kSlides;
+            return;
+        }
+    }
+
+    // Where the side through a neighbour leads past the star's vertex. `end`: the neighbour's place.
+    Vec2 beyond_on_side(uint32_t neighbour, const Vec2& end) const {
+        bool along_x = std::abs(end.x()) > std::abs(end.y());
+        if (freedom_[neighbour] == Freedom::kSlides) {
+            const Vec2 at = mesh_.place(spokes_.front().half_edge) + end;
+            along_x = at.x() != std::floor(at.x());
+        }
+        return along_x ? Vec2(-end.x(), end.y()) : Vec2(end.x(), -end.y());
     }
 
     // Returns whether the triangles of the star are counter-clockwise around x, and go around it once.
