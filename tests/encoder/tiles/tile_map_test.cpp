@@ -53,21 +53,6 @@ TEST(TileMap, KeepsTheTrianglesOfClosedSurfaces) {
     }
 }
 
-TEST(TileMap, LeavesOutFewVerticesAtBoundaries) {
-    for (const NamedMesh& m : connected_meshes()) {
-        if (m.boundary_loops == 0) continue;
-        const MappedMesh made = mapped(m.mesh, kTiles);
-        if (!made.base.pairing.unpaired.empty()) continue;
-        EXPECT_LE(made.map.left_out.size(), made.input.mesh.positions.size() / 5) << m.name;
-        const Topology topology = build_topology({made.input.mesh.positions, made.map.triangles});
-        for (uint32_t h = 0; h < topology.twin.size(); ++h) {
-            if (topology.twin[h] != kNone) continue;
-            const uint32_t v = made.map.triangles[h / 3][h % 3];
-            EXPECT_TRUE(on_border(made.map.places[v])) << m.name;
-        }
-    }
-}
-
 TEST(TileMap, CornersOfTilesAreVertices) {
     const MappedMesh made = mapped(clean(corpus::limbed_blob(24)).value().mesh, kTiles);
     for (const Quad& quad : made.map.quads) {
@@ -78,21 +63,6 @@ TEST(TileMap, CornersOfTilesAreVertices) {
             EXPECT_NE(std::find(there.begin(), there.end(), v), there.end());
         }
     }
-}
-
-TEST(TileMap, CreasesLieOnBordersOfTiles) {
-    const MappedMesh made = mapped(clean(corpus::box(12, 1, 1)).value().mesh, 24, 1.0);
-    const Mesh& mesh = made.input.mesh;
-    ASSERT_TRUE(made.base.pairing.crossed.empty());
-    size_t creases = 0, beside = 0;
-    for (uint32_t h = 0; h < made.input.sharp.size(); ++h) {
-        if (!made.input.sharp[h]) continue;
-        ++creases;
-        beside += !on_border(made.map.places[from(mesh, h)]);
-    }
-    EXPECT_GT(creases, 100u);
-    EXPECT_LT(beside, creases / 50);
-    EXPECT_LT(made.map.stray, creases / 50);
 }
 
 TEST(TileMap, SpreadsTheSurfaceEvenly) {
