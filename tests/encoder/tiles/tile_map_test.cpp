@@ -15,8 +15,6 @@ constexpr uint32_t kTiles = 40;
 
 double squared_length(const TileTriangle& t, size_t i) { return (t.corners[(i + 1) % 3] - t.corners[i]).squaredNorm(); }
 
-bool on_border(const TilePlace& p) { return p.uv.x() == 0 || p.uv.x() == 1 || p.uv.y() == 0 || p.uv.y() == 1; }
-
 TEST(TileMap, IsOneToOneOnEverySurface) {
     for (const NamedMesh& m : surfaces()) {
         const MappedMesh made = mapped(m.mesh, kTiles);
