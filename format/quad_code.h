@@ -54,7 +54,7 @@ template <class Coder, class Source>
 bool code_quads(Coder& coder, QuadModels& models, Source& source, const QuadCodeWork& work, QuadComplex* complex) {
     constexpr uint32_t kOpen = UINT32_MAX - 1;  // in place of a mate: none yet
     static_assert(kNoMate != kOpen);
-    auto [next, previous, fan] = work;
+    uint32_t *next = work.next, *previous = work.previous, *fan = work.fan;
     uint32_t* mate = complex->mate;
     const uint32_t end = complex->half_edges();
     uint32_t made = 0;  // half-edges of the tiles so far
