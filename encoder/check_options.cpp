@@ -54,8 +54,6 @@ Result<void> check_options(const EncodeOptions& options) {
         return wrong("the samples must be from 1000 to 67108864; not " + std::to_string(options.samples));
     if (options.tiles > kMostTiles)
         return wrong("at most " + std::to_string(kMostTiles) + " tiles; not " + std::to_string(options.tiles));
-    if (options.layout == Layout::kTiles && (options.normal_side > 0 || options.color_side.value_or(0) > 0))
-        return wrong("tiles hold no normals and no colours; leave them out, or take --layout gim");
     if (options.charts > kMaxCharts)
         return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));
     return {};

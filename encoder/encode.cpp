@@ -45,14 +45,15 @@ Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, E
     options.layout = layout.layout;
     const bool drops_colors = layout.layout == Layout::kTiles && !options.color_side;
     if (drops_colors) options.color_side = 0;
-    CutPreferences cuts;  // chosen at the first side, then kept
+    CutPreferences cuts;                      // chosen at the first side, then kept
+    std::optional<TileableSurface> tileable;  // serves every number of tiles
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
                                          const Observer& shown) -> Result<Encoded> {
         EncodeReport report = prepared.report;
         if (drops_colors && !prepared.input.appearance.empty())
             report.warnings.push_back("tiles hold no colours; those of the input are left out");
         const bool may_grow = now.side == options.side;  // smaller sides are trials
-        GIM_TRY(images, layout.make({prepared.mesh, now, clock, shown, report, cuts, may_grow}));
+        GIM_TRY(images, layout.make({prepared.mesh, now, clock, shown, report, cuts, tileable, may_grow}));
         return code_to_file(*images, {prepared.mesh, prepared.input, prepared.frame}, now, contest, clock,
                             std::move(report));
     };

@@ -32,7 +32,11 @@ Made charts_of(const MakeImages& in) {
 }
 
 Made tiles_of(const MakeImages& in) {
-    GIM_TRY(tiles, make_tiles(in.mesh, in.options, in.clock, in.observer));
+    if (in.options.normal_side > 0 || in.options.color_side.value_or(0) > 0)
+        return Error{Stage::kInput, "tiles hold no normals and no colours; leave them out, or take --layout gim"};
+    in.clock.begin(Stage::kCut);
+    if (!in.tileable) in.tileable = make_tileable(in.mesh);
+    GIM_TRY(tiles, make_tiles(*in.tileable, in.mesh, in.options, in.clock));
     in.report.stretch_efficiency = tiles.stretch_efficiency;
     in.report.folds_before_fit = tiles.folds_before_fit;
     return tiles_layout(std::move(tiles), in.mesh, in.options);
@@ -67,6 +71,12 @@ constexpr std::array<LayoutEntry, 3> kLayouts = {{{Layout::kGim, squares_of, eff
 }  // namespace
 
 std::span<const LayoutEntry> all_layouts() { return kLayouts; }
+
+std::span<const LayoutEntry> rated_layouts() {
+    const auto* end =
+        std::find_if(kLayouts.begin(), kLayouts.end(), [](const LayoutEntry& entry) { return !entry.efficiency; });
+    return {kLayouts.begin(), end};
+}
 
 const LayoutEntry* find_layout(Layout layout) {
     const auto* found = std::find_if(kLayouts.begin(), kLayouts.end(),

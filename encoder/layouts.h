@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "encoder/base/result.h"
@@ -9,6 +10,7 @@
 #include "encoder/layout/layout_images.h"
 #include "encoder/squares/make_squares.h"
 #include "encoder/surface/mesh.h"
+#include "encoder/tiles/make_tiles.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -18,21 +20,23 @@ struct MakeImages {
     const EncodeOptions& options;
     StageClock& clock;
     const Observer& observer;
-    EncodeReport& report;  // gets the figures of the stages
-    CutPreferences& cuts;  // squares: empty, or the choice of an earlier call
-    bool may_grow = true;  // takes more samples than the options say rather than fail
+    EncodeReport& report;                      // gets the figures of the stages
+    CutPreferences& cuts;                      // squares: empty, or the choice of an earlier call
+    std::optional<TileableSurface>& tileable;  // tiles: empty, or what an earlier call made
+    bool may_grow = true;                      // takes more samples than the options say rather than fail
 };
 
 struct LayoutEntry {
     Layout layout;
     // Runs all stages from the clean mesh to images that are ready to be coded.
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
-    // Returns effective samples per sample; 0 if the layout cannot take the mesh. For --layout auto; null: not asked.
+    // Returns effective samples per sample; 0 if the layout cannot take the mesh. Null: the layout is not rated.
     double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
 };
 
-// Returns the layouts in the order that --layout auto prefers for lossy files.
+// Returns the layouts in the order that --layout auto prefers for lossy files. Those that it rates come first.
 std::span<const LayoutEntry> all_layouts();
+std::span<const LayoutEntry> rated_layouts();
 
 // Returns null if the encoder does not know the layout. layout: not kAuto.
 const LayoutEntry* find_layout(Layout layout);

@@ -83,12 +83,11 @@ bool lacks_samples(const Result<ChartLevels>& charts) { return !charts.ok() && c
 Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
     MultiChartOptions options = chart_options_of(asked);
-    const bool may_even = even_axes(mesh).eccentricity > kLeastEccentricity;
     for (int doublings = 0;; ++doublings, options.samples *= 2) {
         options.even_axes = false;
         auto charts = charts_within(mesh, options, clock, observer, report);
         options.most_packings = kPackingsIfGrown;
-        if (lacks_samples(charts) && may_even) {
+        if (lacks_samples(charts) && even_axes(mesh).eccentricity > kLeastEccentricity) {
             options.even_axes = true;
             charts = charts_within(mesh, options, clock, observer, report);
         }

@@ -30,8 +30,8 @@ using MakeFitCodec = std::function<std::unique_ptr<FitCodec>(const FitFrame& fra
 
 class CodedFit {
   public:
-    // For a square. Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their details. `seed`
-    // decides where distances are sampled.
+    // For a square. Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their
+    // details. `seed` decides where distances are sampled.
     CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
     // For an image of any layout.
     CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed);

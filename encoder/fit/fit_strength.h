@@ -24,4 +24,15 @@ inline std::optional<FitOptions::Strength> fit_strength(const EncodeOptions& opt
                                                             : FitOptions::Strength::kStiff;
 }
 
+// The fit of an image as it is sampled. Returns nothing if no fit is wanted.
+inline std::optional<FitOptions> first_fit(const EncodeOptions& options) {
+    const auto strength = fit_strength(options);
+    if (!strength) return std::nullopt;
+    FitOptions fit;
+    fit.strength = *strength;
+    fit.seed = options.seed;
+    fit.threads = options.threads;
+    return fit;
+}
+
 }  // namespace gim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "encoder/base/result.h"
@@ -23,10 +24,6 @@ namespace {
 // Faces larger than this part of the surface are split before cutting. It is about 8 samples of the image, within
 // bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
 double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
-
-// What squeezing the surface costs in the map (parametrize.h). More leaves fewer folds and takes more bytes on smooth
-// scans and machined parts (spec/rationale.md). Lossless images have finer steps and need less.
-constexpr double kCodedSqueeze = 1, kLosslessSqueeze = 0.2;
 
 std::string percent(double part) {
     char text[32];
@@ -105,15 +102,11 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     GIM_TRY(sampled, sample_surface(cut.boundary, uv, options.side));
     square.image = std::move(sampled);
     if (observer) observer(make_snapshot("image-sampled", "sampled", square.image));
-    const auto strength = fit_strength(options);
-    if (!strength) return square;
+    const std::optional<FitOptions> fit_options = first_fit(options);
+    if (!fit_options) return square;
 
     clock.begin(Stage::kFit);
-    FitOptions fit_options;
-    fit_options.strength = *strength;
-    fit_options.seed = options.seed;
-    fit_options.threads = options.threads;
-    GIM_TRY(fitted, fit(square.image, mesh, fit_options, clock.progress()));
+    GIM_TRY(fitted, fit(square.image, mesh, *fit_options, clock.progress()));
     square.image.positions = std::move(fitted.positions);
     square.folds_before_fit = fitted.before.folds;
     if (observer) observer(make_snapshot("image-fitted", "fitted", square.image));

@@ -32,6 +32,10 @@ FaceMetric face_metric(const Vec3& a, const Vec3& b, const Vec3& c, double least
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 inline double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); }
 
+// What squeezing the surface costs in a map, against stretching it. More leaves fewer folds and takes more bytes on smooth
+// scans and machined parts (spec/rationale.md). Lossless images have finer steps and need less.
+inline constexpr double kCodedSqueeze = 1, kLosslessSqueeze = 0.2;
+
 // Returns weight * N / D^2 + squeeze * N, or infinity if the triangle is flat or turned over.
 double stretch_energy(const FaceMetric& metric, const Vec2& a, const Vec2& b, const Vec2& c);
 

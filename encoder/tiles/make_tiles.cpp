@@ -1,5 +1,6 @@
 #include "encoder/tiles/make_tiles.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,16 +13,12 @@
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/split_chords.h"
-#include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_map.h"
 #include "format/tile_atlas.h"
 
 namespace gim {
 
 namespace {
-
-// What squeezing the surface costs in the map (tile_map.h).
-constexpr double kCodedSqueeze = 1, kLosslessSqueeze = 0.2;
 
 // The finest tiles whose atlas has at most so many samples; at least 2 x 2 intervals.
 uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
@@ -30,22 +27,11 @@ uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
     return exponent;
 }
 
-struct TiledSurface {
-    TileInput input;
-    TileBase base;
-};
-
-Result<TiledSurface> find_base(const Mesh& mesh, uint32_t tiles) {
-    TiledSurface made;
-    made.input = make_room_for_tiles(mesh, {});
-    split_chords(made.input.mesh, made.input.sharp);
-    const BaseHierarchy hierarchy(made.input.mesh, made.input.sharp);
-    made.base = make_tile_base(made.input, hierarchy, 2 * tiles);
-    if (!made.base.pairing.unpaired.empty()) {
-        return Error{Stage::kCut, std::to_string(made.base.pairing.unpaired.size()) +
-                                      " triangles of the base mesh do not pair into tiles; take another layout"};
-    }
-    return made;
+Result<TileBase> find_base(const TileableSurface& surface, uint32_t tiles) {
+    TileBase base = make_tile_base(surface.input, surface.hierarchy, 2 * tiles);
+    if (base.pairing.unpaired.empty()) return base;
+    return Error{Stage::kCut, std::to_string(base.pairing.unpaired.size()) +
+                                  " triangles of the base mesh do not pair into tiles; take another layout"};
 }
 
 struct Sampled {
@@ -82,16 +68,25 @@ std::vector<double> importance_from(const Mesh& dense, const TileMap& map, const
 
 }  // namespace
 
-Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, StageClock& clock, const Observer&) {
+TileableSurface make_tileable(const Mesh& mesh) {
+    TileInput input = make_room_for_tiles(mesh, {});
+    split_chords(input.mesh, input.sharp);
+    BaseHierarchy hierarchy(input.mesh, input.sharp);
+    return {std::move(input), std::move(hierarchy)};
+}
+
+Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, const EncodeOptions& options,
+                             StageClock& clock) {
     clock.begin(Stage::kCut);
-    GIM_TRY(surface, find_base(mesh, options.tiles));
+    GIM_TRY(tiles, find_base(surface, options.tiles));
+    const auto& [base, pairing] = tiles;
     const Mesh& dense = surface.input.mesh;
 
     clock.begin(Stage::kParametrize);
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     TileMapOptions map_options;
     map_options.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    GIM_TRY(map, map_tiles(dense, surface.base.base, surface.base.pairing.quads, map_options, clock.progress()));
+    GIM_TRY(map, map_tiles(dense, base, pairing.quads, map_options, clock.progress()));
     MadeTiles made;
     made.stretch_efficiency = stretch_efficiency(dense.positions, map);
 
@@ -99,8 +94,7 @@ Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, Sta
     if (options.density) {
         GIM_TRY(first, sample(dense, map, exponent));
         map_options.importance = importance_from(dense, map, first.atlas, lossless);
-        GIM_TRY(adapted,
-                map_tiles(dense, surface.base.base, surface.base.pairing.quads, map_options, clock.progress()));
+        GIM_TRY(adapted, map_tiles(dense, base, pairing.quads, map_options, clock.progress()));
         map = std::move(adapted);
     }
 
@@ -108,15 +102,11 @@ Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, Sta
     GIM_TRY(sampled, sample(dense, map, exponent));
     made.tiles = std::move(sampled.tiles);
     made.atlas = std::move(sampled.atlas);
-    const auto strength = fit_strength(options);
-    if (!strength) return made;
+    const std::optional<FitOptions> fit_options = first_fit(options);
+    if (!fit_options) return made;
 
     clock.begin(Stage::kFit);
-    FitOptions fit_options;
-    fit_options.strength = *strength;
-    fit_options.seed = options.seed;
-    fit_options.threads = options.threads;
-    GIM_TRY(fitted, fit(made.atlas, mesh, fit_options, clock.progress()));
+    GIM_TRY(fitted, fit(made.atlas, mesh, *fit_options, clock.progress()));
     made.folds_before_fit = fitted.before.folds;
     made.atlas.positions = std::move(fitted.positions);
     return made;

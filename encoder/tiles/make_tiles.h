@@ -6,10 +6,19 @@
 #include "encoder/base/stage_clock.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/surface/mesh.h"
+#include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_image.h"
 #include "gim/encoder.h"
 
 namespace gim {
+
+// What does not depend on the number of tiles.
+struct TileableSurface {
+    TileInput input;
+    BaseHierarchy hierarchy;
+};
+// mesh: clean. O(F log F).
+TileableSurface make_tileable(const Mesh& mesh);
 
 struct MadeTiles {
     TileImage tiles;
@@ -18,10 +27,10 @@ struct MadeTiles {
     uint64_t folds_before_fit = 0;
 };
 
-// In:  a clean mesh with any number of components, boundaries and handles.
+// In:  what make_tileable() makes of a clean mesh with any number of components, boundaries and handles, and that mesh.
 // Out: about options.tiles (not 0) tiles, as fine as options.samples allows.
 // Cost: O(F log F), and the fit.
-Result<MadeTiles> make_tiles(const Mesh& mesh, const EncodeOptions& options, StageClock& clock,
-                             const Observer& observer);
+Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, const EncodeOptions& options,
+                             StageClock& clock);
 
 }  // namespace gim

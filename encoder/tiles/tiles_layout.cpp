@@ -6,11 +6,9 @@
 
 #include "encoder/code/file_units.h"
 #include "encoder/fit/fit_coded.h"
-#include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/tile_codec.h"
 #include "encoder/tiles/write_tiles.h"
-#include "format/tile_atlas.h"
 
 namespace gim {
 

@@ -11,6 +11,7 @@
 
 #include "corpus/generators.h"
 #include "encoder/surface/clean.h"
+#include "tests/encoder/volume.h"
 #include "tests/random_numbers.h"
 
 namespace gim {
@@ -192,13 +193,6 @@ TriangleMesh one_sided(Random& random) {
         }
     }
     return mesh;
-}
-
-double volume_of(const Mesh& mesh) {
-    double volume = 0;
-    for (const Triangle& t : mesh.triangles)
-        volume += mesh.positions[t[0]].dot(mesh.positions[t[1]].cross(mesh.positions[t[2]])) / 6;
-    return volume;
 }
 
 CleanMesh cleaned(const TriangleMesh& mesh) {

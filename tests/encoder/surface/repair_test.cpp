@@ -8,6 +8,7 @@
 #include "corpus/corpus.h"
 #include "corpus/generators.h"
 #include "encoder/surface/clean.h"
+#include "tests/encoder/volume.h"
 #include "tests/models.h"
 
 namespace gim {
@@ -17,13 +18,6 @@ using corpus::box;
 using corpus::soup;
 
 const CleanOptions kAny = {.require_connected = false};
-
-double volume_of(const Mesh& mesh) {
-    double volume = 0;
-    for (const Triangle& t : mesh.triangles)
-        volume += mesh.positions[t[0]].dot(mesh.positions[t[1]].cross(mesh.positions[t[2]])) / 6;
-    return volume;
-}
 
 TriangleMesh moved(TriangleMesh mesh, double x, double y, double z) {
     for (auto& p : mesh.positions) p = {p[0] + x, p[1] + y, p[2] + z};
