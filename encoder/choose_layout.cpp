@@ -4,20 +4,17 @@
 
 namespace gim {
 
-Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
-    const bool is_lossless = options.rate.kind == RateTarget::Kind::kLossless;
-    const LayoutEntry* best = nullptr;
+Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, bool with_planes, StageClock& clock) {
+    Layout best = all_layouts().front().layout;
     double most = 0;
-    for (const LayoutEntry& entry : rated_layouts()) {
-        const bool is_last = &entry == &rated_layouts().back();
-        if (!is_lossless && is_last) return entry.layout;  // nothing else can take the mesh
+    for (const LayoutEntry& entry : all_layouts()) {
+        if (with_planes && !entry.holds_planes) continue;
         const double efficiency = entry.efficiency(mesh, options, clock);
-        if (!is_lossless && efficiency > 0) return entry.layout;
-        if (best != nullptr && efficiency <= most) continue;
-        best = &entry;
+        if (efficiency <= most) continue;
+        best = entry.layout;
         most = efficiency;
     }
-    return best->layout;
+    return best;
 }
 
 }  // namespace gim

@@ -1,4 +1,4 @@
-// --layout auto: chooses the layout that should give the better PSNR for the same budget, squares or charts.
+// --layout auto for lossless files: chooses the layout that should give the best PSNR.
 #pragma once
 
 #include "encoder/base/stage_clock.h"
@@ -7,13 +7,10 @@
 
 namespace gim {
 
-// Lossless: both layouts take about the same bytes per sample, so the one with more effective samples wins. Effective
-// samples are samples times stretch efficiency (Sander et al. 2003, section 5: what charts gain over one square). Both
-// parametrizations are made for this; neither is fitted.
-// Lossy: squares win unless the surface cannot be cut open onto one. Each chart adds about 150 bytes: its border is
-// stored, and the wavelet cannot predict across it. Charts do not earn this back at useful rates: a horse at 70 dB
-// takes 3 times the bytes.
+// All layouts take about the same bytes per sample, so the one with most effective samples wins. Effective samples are
+// samples times stretch efficiency (Sander et al. 2003, section 5: what charts gain over one square). All parametrizations
+// are made for this; none is fitted. Layouts that cannot hold the planes that are wanted are left out.
 // Cost: seconds. `mesh` must be clean.
-Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
+Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, bool with_planes, StageClock& clock);
 
 }  // namespace gim

@@ -8,7 +8,7 @@
 #include "encoder/base/stage_clock.h"
 #include "encoder/check_options.h"
 #include "encoder/code/rate_target.h"
-#include "encoder/code_to_file.h"
+#include "encoder/file_run.h"
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/squares_layout.h"
 #include "encoder/surface/compare_meshes.h"
@@ -40,13 +40,14 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     options.side = image.side();
     options.node_side =
         std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side(), 5u));
+    const ReferenceSurface reference(surface, options.threads);
     const TriangleMesh no_colors;
     return within_budget(options, [&](const EncodeOptions& now) {
         Squares squares;
         squares.images.push_back(image);
         squares.surfaces.push_back(surface);
-        const auto images = squares_layout(std::move(squares), now);
-        return code_to_file(*images, {surface, no_colors, frame}, now, {}, clock, report);
+        FileRun run(squares_layout(std::move(squares), now), {reference, no_colors, frame}, now, clock, report);
+        return run.finish({});
     });
 }
 

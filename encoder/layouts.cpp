@@ -10,6 +10,7 @@
 #include "encoder/charts/multi_chart.h"
 #include "encoder/check_options.h"
 #include "encoder/squares/squares_layout.h"
+#include "encoder/tiles/best_tiles.h"
 #include "encoder/tiles/make_tiles.h"
 #include "encoder/tiles/tiles_layout.h"
 
@@ -64,19 +65,26 @@ double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, Stag
     return charts.ok() ? charts.value().stretch_efficiency * charts.value().packing_efficiency : 0;
 }
 
-constexpr std::array<LayoutEntry, 3> kLayouts = {{{Layout::kGim, squares_of, efficiency_of_squares},
-                                                  {Layout::kMcgim, charts_of, efficiency_of_charts},
-                                                  {Layout::kTiles, tiles_of, nullptr}}};
+double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
+    EncodeOptions options = asked;
+    options.fit = FitStrength::kOff;
+    options.density = false;
+    if (options.tiles == 0) options.tiles = kUsualTiles;
+    const auto tiles = make_tiles(make_tileable(mesh), mesh, options, clock);
+    if (!tiles.ok()) return 0;
+    const auto& [image, atlas, stretch_efficiency, folds] = tiles.value();
+    return stretch_efficiency * double(image.positions.size()) / double(atlas.positions.size());
+}
+
+constexpr std::array<LayoutEntry, 3> kLayouts = {{
+    {Layout::kGim, squares_of, efficiency_of_squares, true, true},
+    {Layout::kMcgim, charts_of, efficiency_of_charts, false, true},
+    {Layout::kTiles, tiles_of, efficiency_of_tiles, true, false},
+}};
 
 }  // namespace
 
 std::span<const LayoutEntry> all_layouts() { return kLayouts; }
-
-std::span<const LayoutEntry> rated_layouts() {
-    const auto* end =
-        std::find_if(kLayouts.begin(), kLayouts.end(), [](const LayoutEntry& entry) { return !entry.efficiency; });
-    return {kLayouts.begin(), end};
-}
 
 const LayoutEntry* find_layout(Layout layout) {
     const auto* found = std::find_if(kLayouts.begin(), kLayouts.end(),

@@ -30,13 +30,14 @@ struct LayoutEntry {
     Layout layout;
     // Runs all stages from the clean mesh to images that are ready to be coded.
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
-    // Returns effective samples per sample; 0 if the layout cannot take the mesh. Null: the layout is not rated.
+    // Returns effective samples per sample; 0 if the layout cannot take the mesh.
     double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
+    bool races = false;         // lossy files: worth a trial
+    bool holds_planes = false;  // normals and colours
 };
 
-// Returns the layouts in the order that --layout auto prefers for lossy files. Those that it rates come first.
+// Returns the layouts in the order that --layout auto prefers where nothing else tells them apart.
 std::span<const LayoutEntry> all_layouts();
-std::span<const LayoutEntry> rated_layouts();
 
 // Returns null if the encoder does not know the layout. layout: not kAuto.
 const LayoutEntry* find_layout(Layout layout);

@@ -20,7 +20,7 @@ namespace gim {
 
 namespace {
 
-using Bytes = std::vector<uint8_t>;
+using Bytes = RateSearch::Bytes;
 using Values = RateSearchValues;
 
 // Codes a file at a quantizer.
@@ -39,15 +39,16 @@ double rounded_up(double value) {
     return std::ceil(value / digit) * digit;
 }
 
-// Finds the file that meets a rate target.
-class RateSearch {
+}  // namespace
+
+struct RateSearch::Impl {
   public:
-    RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options, const Contest& contest,
-               const ReferenceSurface& reference, StageClock& clock)
+    Impl(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
+         const ReferenceSurface& reference, StageClock& clock)
         : images_(images),
           parameters_(std::move(parameters)),
+          first_quantizer_(first_quantizer(options.rate, options.bits)),
           target_(options.rate),
-          contest_(contest),
           reference_(reference),
           clock_(clock) {
         parameters_.lossless = target_.kind == RateTarget::Kind::kLossless;
@@ -55,17 +56,38 @@ class RateSearch {
         quick_.samples = Values::kSearchSamples;
     }
 
-    Result<Bytes> run(double quantizer) {
-        if (target_.kind == RateTarget::Kind::kMaxError) return code_within_error(quantizer);
-        return target_.kind == RateTarget::Kind::kBytes ? code_within_budget(quantizer) : approach_and_code(quantizer);
+    Result<Estimate> estimate(std::optional<double> near) {
+        const double quantizer = near.value_or(first_quantizer_);
+        if (images_.is_fitted_to_quantizer()) {
+            GIM_TRY(approached, approach(quantizer));
+            approached_ = std::move(approached);
+        } else {
+            parameters_.quantizer = quantizer;
+            GIM_TRY(writer, images_.writer(parameters_));
+            approached_ = Approached{writer.write(quantizer), quantizer};
+        }
+        GIM_TRY(comparison, compare_file(approached_->bytes, reference_, quick_));
+        return Estimate{log_bytes(double(approached_->bytes.size()), comparison.psnr), approached_->quantizer};
+    }
+
+    Result<Bytes> run(const Contest& contest) {
+        contest_ = contest;
+        if (target_.kind == RateTarget::Kind::kMaxError) return code_within_error(first_quantizer_);
+        return target_.kind == RateTarget::Kind::kBytes ? code_within_budget() : approach_and_code();
     }
 
   private:
-    Result<Bytes> approach_and_code(double quantizer) {
-        if (!images_.is_fitted_to_quantizer()) return search(quantizer);
-        if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(quantizer, CodedFit::Effort::kFinal);
-        GIM_TRY(nearer, approach(quantizer));
-        return fit_to_target(nearer);
+    struct Approached {
+        Bytes bytes;           // the last file
+        double quantizer = 0;  // the next one to try
+    };
+
+    Result<Bytes> approach_and_code() {
+        if (!images_.is_fitted_to_quantizer()) return search(first_quantizer_);
+        if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(first_quantizer_, CodedFit::Effort::kFinal);
+        if (approached_) return fit_to_target(approached_->quantizer);
+        GIM_TRY(approached, approach(first_quantizer_));
+        return fit_to_target(approached.quantizer);
     }
 
     // No file is smaller than one without details. So a budget below that needs no search.
@@ -74,12 +96,12 @@ class RateSearch {
         return target_.value < double(writer.write(std::exp2(Values::kCoarsest)).size());
     }
 
-    Result<Bytes> code_within_budget(double quantizer) {
-        if (target_.value == kFewestBytes) return least_file(images_, parameters_, quantizer, clock_);
+    Result<Bytes> code_within_budget() {
+        if (target_.value == kFewestBytes) return least_file(images_, parameters_, first_quantizer_, clock_);
         const Error too_few{Stage::kCode, "no file found is small enough"};
         GIM_TRY(is_hopeless, is_below_all_files());
         if (is_hopeless) return too_few;
-        GIM_TRY(found, approach_and_code(quantizer));
+        GIM_TRY(found, approach_and_code());
         if (found.empty()) return too_few;
         return found;
     }
@@ -113,7 +135,7 @@ class RateSearch {
             wanted.value *= 1 - Values::kFittedBytesSlack / 2;
             return octaves_to(wanted, double(bytes.size()), 0);
         }
-        wanted.value += Values::kFittedPsnrSlack / 2;
+        if (target_.kind == RateTarget::Kind::kPsnr) wanted.value += Values::kFittedPsnrSlack / 2;
         GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
         return octaves_to(wanted, 0, comparison.psnr);
     }
@@ -129,16 +151,17 @@ class RateSearch {
     }
 
     // Approaches the target's quantizer by quick fits.
-    Result<double> approach(double quantizer) {
+    Result<Approached> approach(double quantizer) {
         NextQuantizer next(Values::kMostStep);
+        Approached approached{{}, quantizer};
         for (int k = 0; k < Values::kMostApproaches; ++k) {
-            GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
+            GIM_TRY(bytes, fitted_file(approached.quantizer, CodedFit::Effort::kSearch));
             GIM_TRY(octaves, room(bytes));
-            quantizer = next.after(quantizer, octaves);
             if (is_losing(bytes, octaves, next.slope(), Values::kQuickExcess)) return lost();
+            approached = {std::move(bytes), next.after(approached.quantizer, octaves)};
             if (std::abs(octaves) < Values::kNear) break;
         }
-        return quantizer;
+        return approached;
     }
 
     // Fits until a file meets the target closely, and returns the best file that meets it. Each file is coded with the
@@ -162,7 +185,7 @@ class RateSearch {
         return search(quantizer);
     }
 
-    static Error lost() { return {Stage::kCode, "another size of image takes fewer bytes"}; }
+    static Error lost() { return {Stage::kCode, "another image takes fewer bytes"}; }
 
     Result<bool> meets_target(const Bytes& bytes) const {
         if (target_.kind == RateTarget::Kind::kBytes)
@@ -264,23 +287,25 @@ class RateSearch {
 
     LayoutImages& images_;
     CodingParameters parameters_;
-    double fitted_to_ = 0;          // quantizer of the last fit
-    double finally_fitted_to_ = 0;  // of the last full one
-    Bytes nearest_;                 // the file of the least largest distance so far
+    const double first_quantizer_;
+    std::optional<Approached> approached_;  // of estimate()
+    double fitted_to_ = 0;                  // quantizer of the last fit
+    double finally_fitted_to_ = 0;          // of the last full one
+    Bytes nearest_;                         // the file of the least largest distance so far
     double least_distance_ = 0;
     const RateTarget target_;
-    const Contest contest_;
+    Contest contest_;
     const ReferenceSurface& reference_;
     StageClock& clock_;
     CompareOptions quick_, full_;
 };
 
-}  // namespace
+RateSearch::RateSearch(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
+                       const ReferenceSurface& reference, StageClock& clock)
+    : impl_(std::make_unique<Impl>(images, std::move(parameters), options, reference, clock)) {}
+RateSearch::~RateSearch() = default;
 
-Result<Bytes> search_rate(LayoutImages& images, const CodingParameters& parameters, const EncodeOptions& options,
-                          const Contest& contest, const ReferenceSurface& reference, StageClock& clock) {
-    RateSearch search(images, parameters, options, contest, reference, clock);
-    return search.run(first_quantizer(options.rate, options.bits));
-}
+Result<Estimate> RateSearch::estimate(std::optional<double> near) { return impl_->estimate(near); }
+Result<RateSearch::Bytes> RateSearch::run(const Contest& contest) { return impl_->run(contest); }
 
 }  // namespace gim

@@ -38,7 +38,7 @@ struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
     bool even = false;
-    const CLI::Option* size = nullptr;
+    const CLI::Option *layout = nullptr, *size = nullptr, *node_side = nullptr, *charts = nullptr, *tiles = nullptr;
     std::optional<double> psnr, quality;
     std::string max_error, weld;
     std::optional<uint64_t> bytes;
@@ -51,38 +51,41 @@ struct EncodeArguments {
 void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
-    sub->add_option(
-           "--layout", a.command.options.layout,
-           "gim: one square for each component; mcgim: several charts in one rectangle; tiles: square tiles on a "
-           "base mesh of quads; auto: the encoder chooses gim or mcgim")
-        ->transform(CLI::CheckedTransformer(layouts).description(""))
-        ->type_name("gim|mcgim|tiles|auto")
-        ->default_str("gim");
+    a.command.options.layout = Layout::kAuto;
+    a.layout = sub->add_option("--layout", a.command.options.layout,
+                               "gim: one square for each component; mcgim: several charts in one rectangle; tiles: "
+                               "square tiles on a base mesh of quads; auto: tries gim and tiles and keeps the smaller "
+                               "file, or the better one for --bytes; with --lossless takes the layout that suits the "
+                               "shape. An option that only one layout has chooses it. Default: auto")
+                   ->transform(CLI::CheckedTransformer(layouts).description(""))
+                   ->type_name("gim|mcgim|tiles|auto");
     a.size =
         sub->add_option("--size", a.command.options.side,
                         "gim: samples per side; several components share the samples of one such image. A cut that "
                         "does not fit gets the next size, with a warning. Default: 257, or with --psnr, "
                         "--max-error or --bytes a smaller size if its file is better")
             ->check(side_validator(9, 4097));
-    sub->add_option(
-           "--node-side", a.command.options.node_side,
-           "gim: side of the coarsest level that stays closed, at most the size. The cut's nodes lie on a grid "
-           "of this side, or on a finer one if the cut needs it")
-        ->check(side_validator(5, 4097))
-        ->capture_default_str();
+    a.node_side =
+        sub->add_option("--node-side", a.command.options.node_side,
+                        "gim: side of the coarsest level that stays closed, at most the size. The cut's nodes "
+                        "lie on a grid of this side, or on a finer one if the cut needs it")
+            ->check(side_validator(5, 4097))
+            ->capture_default_str();
     sub->add_option("--samples", a.command.options.samples,
                     "mcgim, tiles: most samples of the image, width * height. Charts that do not fit get more, with a "
                     "warning")
         ->check(CLI::Range(1000, 1 << 26))
         ->capture_default_str();
-    sub->add_option("--charts", a.command.options.charts,
-                    "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
-        ->check(CLI::Range(0, 4096))
-        ->capture_default_str();
-    sub->add_option("--tiles", a.command.options.tiles,
-                    "tiles: number of tiles. The encoder makes more if the surface needs them. 0: the encoder decides")
-        ->check(CLI::Range(0, 65536))
-        ->capture_default_str();
+    a.charts = sub->add_option(
+                      "--charts", a.command.options.charts,
+                      "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
+                   ->check(CLI::Range(0, 4096))
+                   ->capture_default_str();
+    a.tiles = sub->add_option(
+                     "--tiles", a.command.options.tiles,
+                     "tiles: number of tiles. The encoder makes more if the surface needs them. 0: the encoder decides")
+                  ->check(CLI::Range(0, 65536))
+                  ->capture_default_str();
     sub->add_option("--bits", a.command.options.bits, "Bits per coordinate of the bounding box")
         ->check(CLI::Range(8, 20))
         ->capture_default_str();
@@ -161,6 +164,26 @@ void apply_planes(EncodeArguments& a) {
     options.plane_quality = a.plane_quality;
 }
 
+// An option that only one layout has chooses it. Throws if two layouts are meant.
+void apply_layout(EncodeArguments& a) {
+    if (a.layout->count() > 0) return;
+    Layout& layout = a.command.options.layout;
+    const CLI::Option* chosen_by = nullptr;
+    const auto choose = [&](const CLI::Option* option, Layout of_option) {
+        if (option->count() == 0) return;
+        if (chosen_by != nullptr && layout != of_option) {
+            throw CLI::ValidationError(option->get_name(), "belongs to another layout than " + chosen_by->get_name() +
+                                                               "; leave one of them out, or say --layout");
+        }
+        layout = of_option;
+        chosen_by = option;
+    };
+    choose(a.size, Layout::kGim);
+    choose(a.node_side, Layout::kGim);
+    choose(a.charts, Layout::kMcgim);
+    choose(a.tiles, Layout::kTiles);
+}
+
 void apply_rate(EncodeArguments& a) {
     a.command.options.try_smaller_sides = a.size->count() == 0;
     RateTarget& rate = a.command.options.rate;
@@ -228,6 +251,7 @@ Subcommand add_encode(CLI::App& app) {
     add_max_memory(sub, a.command.max_memory);
     add_report_options(sub, a);
     return {sub, [arguments] {
+                apply_layout(*arguments);
                 apply_rate(*arguments);
                 apply_planes(*arguments);
                 arguments->command.options.density = !arguments->even;

@@ -9,6 +9,8 @@ namespace {
 
 using Values = RateSearchValues;
 
+const double kLogBytesPerDecibel = std::log(Values::kBytesPerOctave) / Values::kDecibelPerOctave;
+
 double quality_quantizer(double quality, uint32_t bits) { return 8 * std::exp2((75 - quality) / 10 + int(bits) - 12); }
 
 // Clamps to the range that searches cover.
@@ -38,6 +40,15 @@ double octaves_to(const RateTarget& target, double bytes, double psnr) {
     return target.kind == RateTarget::Kind::kBytes ? std::log(bytes / target.value) / std::log(Values::kBytesPerOctave)
                                                    : (psnr - psnr_of(target)) / Values::kDecibelPerOctave;
 }
+
+double log_bytes(double bytes, double psnr) { return std::log(bytes) - psnr * kLogBytesPerDecibel; }
+
+double bytes_at(const RateTarget& target, double log_bytes) {
+    return target.kind == RateTarget::Kind::kBytes ? target.value
+                                                   : std::exp(log_bytes + psnr_of(target) * kLogBytesPerDecibel);
+}
+
+double psnr_at(double bytes, double log_bytes) { return (std::log(bytes) - log_bytes) / kLogBytesPerDecibel; }
 
 double coarser_quantizer(double quantizer, double octaves, double most) {
     return clamped_quantizer(quantizer * std::exp2(std::clamp(octaves, -most, most)));

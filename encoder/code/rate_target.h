@@ -32,6 +32,8 @@ struct RateSearchValues {
     // Searches on one side of the square that compete with other sides (contest.h). By how much of the rival's bytes a
     // file may seem larger, after a quick fit and after a full one. Quick fits take 5 to 10 % more bytes.
     static constexpr double kQuickExcess = 0.15, kFinalExcess = 0.04;
+    // Brief fits may rank images wrongly whose bytes differ by less than this share.
+    static constexpr double kEstimateNoise = 0.05;
     // Where finer quantizers gain so little and so much is missing, the samples are too few. Slope: of 1; room: octaves.
     static constexpr double kHopelessSlope = 0.35, kHopelessRoom = 0.1;
 
@@ -72,6 +74,19 @@ RateTarget resolved_target(const RateTarget& target, double diagonal);
 // Estimates by how many octaves the quantizer of a fitted file could be coarser to meet the target. bytes, psnr: of that
 // file. The largest error is estimated by the PSNR, because that of a single file is noise.
 double octaves_to(const RateTarget& target, double bytes, double psnr);
+
+// What a brief fit says about a search.
+struct Estimate {
+    double log_bytes = 0;  // the cost of the file
+    double quantizer = 0;  // about the one that meets the target
+};
+
+// The cost of a file in one number: the natural logarithm of its bytes, converted to the same PSNR for all files of a
+// surface, up to a constant. Less is better.
+double log_bytes(double bytes, double psnr);
+// Estimates the bytes at the target, and the PSNR at a budget of bytes, of a file of that cost.
+double bytes_at(const RateTarget& target, double log_bytes);
+double psnr_at(double bytes, double log_bytes);
 
 // Returns the quantizer made coarser by `octaves`, at most `most` either way, within the range that searches cover.
 double coarser_quantizer(double quantizer, double octaves, double most);

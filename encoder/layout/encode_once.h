@@ -1,16 +1,24 @@
 // What layouts need to code an image several times and keep the best file.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 
+#include "encoder/base/result.h"
 #include "encoder/code/contest.h"
+#include "encoder/code/rate_target.h"
 #include "gim/encoder.h"
 
 namespace gim {
 
-// Makes and codes images with these options. contest: the other runs.
-using EncodeOnce =
-    std::function<Result<Encoded>(const EncodeOptions& options, const Contest& contest, const Observer& observer)>;
+struct CodingRuns {
+    // Makes and codes images with these options. contest: the other runs.
+    std::function<Result<Encoded>(const EncodeOptions& options, const Contest& contest)> code;
+    // Makes images with these options, and estimates what their file costs. near: the quantizer of an earlier estimate.
+    // The images wait for code(). Only for targets that are searched for.
+    std::function<Result<Estimate>(const EncodeOptions& options, std::optional<double> near)> estimate;
+};
 
 // Returns whether the run gives a better file for the target than the best one so far.
 inline bool improves(const Result<Encoded>& now, const Result<Encoded>& best, const RateTarget& rate) {
@@ -22,6 +30,13 @@ inline bool improves(const Result<Encoded>& now, const Result<Encoded>& best, co
 // The contest of a run that follows the best one.
 inline Contest contest_with(const Result<Encoded>& best) {
     return {best.ok() ? double(best.value().bytes.size()) : 0, false};
+}
+
+// The contest of a run that has rivals of both.
+inline Contest joined(const Contest& a, const Contest& b) {
+    const bool both = a.rival_bytes > 0 && b.rival_bytes > 0;
+    return {both ? std::min(a.rival_bytes, b.rival_bytes) : std::max(a.rival_bytes, b.rival_bytes),
+            a.is_finer_to_come || b.is_finer_to_come};
 }
 
 }  // namespace gim

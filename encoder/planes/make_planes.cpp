@@ -149,6 +149,10 @@ std::vector<CodedPlane> code_to_budget(const std::vector<AnalysedPlane>& planes,
     }
 }
 
+bool wants_planes(const TriangleMesh& input, const EncodeOptions& options) {
+    return options.normal_side > 0 || color_side(input, options) > 0;
+}
+
 PlaneMaker::PlaneMaker(const Mesh& clean, const TriangleMesh& input, const EncodeOptions& options)
     : impl_(new Impl{clean, input, options, gim::color_side(input, options), {}, {}}) {
     if (impl_->kinds().empty()) return;

@@ -26,18 +26,22 @@ bool may_halve(const EncodeOptions& options) {
 
 }  // namespace
 
-Result<Encoded> best_of_sides(const EncodeOnce& run, const EncodeOptions& whole, const StageClock& clock,
-                              const Observer& observer) {
-    if (!may_halve(whole)) return run(whole, {}, observer);
+std::vector<EncodeOptions> side_variants(const EncodeOptions& options) {
+    if (!may_halve(options)) return {options};
+    return {halved(options), options};
+}
+
+Result<Encoded> best_of_sides(const CodingRuns& runs, const EncodeOptions& whole, const StageClock& clock) {
+    if (!may_halve(whole)) return runs.code(whole, {});
     EncodeOptions options = halved(whole);
-    auto best = run(options, {0, true}, observer);
-    auto of_whole = run(whole, contest_with(best), {});
+    auto best = runs.code(options, {0, true});
+    auto of_whole = runs.code(whole, contest_with(best));
     if (!best.ok() || improves(of_whole, best, whole.rate)) {
         best = std::move(of_whole);
     } else {
         while (options.side >= RateSearchValues::kLeastSideToHalve) {
             options = halved(options);
-            auto half = run(options, contest_with(best), {});
+            auto half = runs.code(options, contest_with(best));
             if (!improves(half, best, whole.rate)) break;
             best = std::move(half);
         }

@@ -49,7 +49,7 @@ double CodingTrial::quantizer_for(const SquareImage& image) const {
 
 Result<double> CodingTrial::log_bytes(const SquareImage& image) const {
     GIM_TRY(now, coded(image, quantizer_));
-    return std::log(now.bytes) - now.psnr * std::log(Values::kBytesPerOctave) / Values::kDecibelPerOctave;
+    return gim::log_bytes(now.bytes, now.psnr);
 }
 
 }  // namespace gim

@@ -1,7 +1,9 @@
 // Layout::kAuto: which layout it chooses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "corpus/generators.h"
 #include "gim/encoder.h"
@@ -48,6 +50,56 @@ TEST(ChooseLayout, ABoxIsCutIntoItsFaces) {
     ASSERT_GT(choice.gain_of_charts(), 3);
     EXPECT_EQ(choice.automatic.report.layout, Layout::kMcgim);
     EXPECT_EQ(choice.automatic.bytes, choice.charts.bytes);
+}
+
+// ---- lossy files: squares and tiles race ----------------------------------------------------------------------------
+
+Result<Encoded> raced(Layout layout, const TriangleMesh& mesh, const RateTarget& rate) {
+    EncodeOptions options;
+    options.layout = layout;
+    options.side = 65;
+    options.samples = 65 * 65;
+    options.rate = rate;
+    return encode(mesh, options);
+}
+
+TEST(ChooseLayout, OfSquaresAndTilesTheSmallerFileIsKept) {
+    constexpr RateTarget kPsnr{RateTarget::Kind::kPsnr, 50};
+    size_t wins_of_tiles = 0;
+    const TriangleMesh meshes[] = {corpus::terrain(24), corpus::plate_with_holes(2, 4), corpus::box(4, 0.6, 0.3)};
+    for (const TriangleMesh& mesh : meshes) {
+        const auto squares = raced(Layout::kGim, mesh, kPsnr), tiles = raced(Layout::kTiles, mesh, kPsnr);
+        const auto best = raced(Layout::kAuto, mesh, kPsnr);
+        ASSERT_TRUE(squares.ok() && tiles.ok() && best.ok());
+        const bool has_tiles = best.value().report.layout == Layout::kTiles;
+        EXPECT_EQ(best.value().bytes, has_tiles ? tiles.value().bytes : squares.value().bytes);
+        const size_t smaller = std::min(squares.value().bytes.size(), tiles.value().bytes.size());
+        EXPECT_LE(double(best.value().bytes.size()), 1.02 * double(smaller));
+        wins_of_tiles += has_tiles;
+    }
+    EXPECT_GT(wins_of_tiles, 0);
+    EXPECT_LT(wins_of_tiles, std::size(meshes));
+}
+
+// What the square reaches at a quality is what the other layouts must reach.
+TEST(ChooseLayout, AtAQualityTheWinnerReachesThePsnrOfTheSquare) {
+    constexpr RateTarget kQuality{RateTarget::Kind::kQuality, 45};
+    for (const TriangleMesh& mesh : {corpus::terrain(24), corpus::plate_with_holes(2, 4)}) {
+        const auto square = raced(Layout::kGim, mesh, kQuality), best = raced(Layout::kAuto, mesh, kQuality);
+        ASSERT_TRUE(square.ok() && best.ok());
+        EXPECT_GE(best.value().report.error.psnr, square.value().report.error.psnr);
+        EXPECT_LE(best.value().bytes.size(), square.value().bytes.size());
+    }
+}
+
+// Tiles hold no colours, so a mesh with colours gets squares.
+TEST(ChooseLayout, ColoursAreKept) {
+    TriangleMesh mesh = corpus::plate_with_holes(2, 4);
+    mesh.appearance.corner_colors.assign(mesh.triangles.size(), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+    const auto best = raced(Layout::kAuto, mesh, {RateTarget::Kind::kPsnr, 45});
+    ASSERT_TRUE(best.ok());
+    EXPECT_NE(best.value().report.layout, Layout::kTiles);
+    EXPECT_EQ(best.value().report.planes.size(), 1);
 }
 
 }  // namespace

@@ -1,0 +1,98 @@
+#include "encoder/file_run.h"
+
+#include <utility>
+#include <vector>
+
+#include "encoder/code/assemble_file.h"
+#include "encoder/code/decode_surface.h"
+#include "encoder/code/level_report.h"
+#include "encoder/planes/make_planes.h"
+#include "encoder/rate_search.h"
+
+namespace gim {
+
+struct FileRun::Impl {
+  public:
+    Impl(std::unique_ptr<LayoutImages> images, const Original& original, const EncodeOptions& options,
+         StageClock& clock, EncodeReport report)
+        : images_(std::move(images)),
+          original_(original),
+          options_(options),
+          clock_(clock),
+          report_(std::move(report)),
+          plane_maker_(original_.surface.mesh(), original_.input, options_),
+          search_(*images_, make_parameters(), options_, original_.surface, clock_) {}
+
+    Result<Estimate> estimate(std::optional<double> near) {
+        clock_.begin(Stage::kCode);
+        return search_.estimate(near);
+    }
+
+    Result<Encoded> finish(const Contest& contest) {
+        clock_.begin(Stage::kCode);
+        GIM_TRY(bytes, search_.run(contest));
+        Encoded encoded{std::move(bytes), std::move(report_)};
+        images_->describe(encoded.report);
+        GIM_CHECK(measure(encoded));
+        clock_.end();
+
+        const LocalFrame& frame = original_.frame;
+        const Vec3& origin = frame.origin;
+        if (frame.is_moved) encoded.bytes = move_origin(encoded.bytes, {origin.x(), origin.y(), origin.z()});
+        move_out_of(frame, encoded.report);
+        describe_file(encoded.bytes, encoded.report);
+        encoded.report.times = clock_.times();
+        encoded.report.seconds = clock_.seconds();
+        return encoded;
+    }
+
+  private:
+    CodingParameters make_parameters() {
+        CodingParameters parameters;
+        if (plane_maker_.wants_any()) {
+            clock_.begin(Stage::kPlanes);
+            parameters.planes = plane_maker_.make(*images_);
+        }
+        parameters.bits = options_.bits;
+        parameters.base_side = options_.node_side;
+        parameters.level_psnr = true;
+        parameters.wide_origin = original_.frame.is_moved;
+        return parameters;
+    }
+
+    // Compares the decoded levels and planes with the input, and stores what the levels reach.
+    Result<void> measure(Encoded& encoded) {
+        clock_.begin(Stage::kCompare);
+        CompareOptions compare_options;
+        compare_options.threads = options_.threads;
+        compare_options.normals = compare_options.defects = true;
+        GIM_TRY(comparison, compare_file(encoded.bytes, original_.surface, compare_options));
+        encoded.report.error = comparison;
+        encoded.report.folds = comparison.defects->folded_faces;
+        GIM_TRY(levels, measure_levels(encoded.bytes, original_.surface, comparison, options_.threads));
+        encoded.report.levels = std::move(levels);
+        GIM_TRY(info, read_own_info(encoded.bytes));
+        encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, info.level_count));
+        GIM_TRY(planes, plane_maker_.measure(encoded.bytes));
+        encoded.report.planes = std::move(planes);
+        return {};
+    }
+
+    const std::unique_ptr<LayoutImages> images_;
+    const Original original_;
+    const EncodeOptions options_;
+    StageClock& clock_;
+    EncodeReport report_;
+    const PlaneMaker plane_maker_;
+    RateSearch search_;
+};
+
+FileRun::FileRun(std::unique_ptr<LayoutImages> images, const Original& original, const EncodeOptions& options,
+                 StageClock& clock, EncodeReport report)
+    : impl_(std::make_unique<Impl>(std::move(images), original, options, clock, std::move(report))) {}
+FileRun::~FileRun() = default;
+
+Result<Estimate> FileRun::estimate(std::optional<double> near) { return impl_->estimate(near); }
+Result<Encoded> FileRun::finish(const Contest& contest) { return impl_->finish(contest); }
+
+}  // namespace gim

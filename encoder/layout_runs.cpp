@@ -1,0 +1,84 @@
+#include "encoder/layout_runs.h"
+
+#include <utility>
+#include <vector>
+
+#include "encoder/code/rate_target.h"
+#include "encoder/squares/best_side.h"
+#include "encoder/tiles/best_tiles.h"
+#include "encoder/within_budget.h"
+
+namespace gim {
+
+LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, const EncodeOptions& options,
+                       StageClock& clock, const Observer& observer)
+    : layout_(layout),
+      prepared_(prepared),
+      options_(options),
+      clock_(clock),
+      observer_(observer),
+      drops_colors_(layout.layout == Layout::kTiles && !options.color_side) {
+    options_.layout = layout.layout;
+    if (drops_colors_) options_.color_side = 0;
+}
+
+Result<LayoutRuns::Started*> LayoutRuns::start(const EncodeOptions& now) {
+    Started& started = started_[{now.side, now.tiles}];
+    if (started.run) return &started;
+    EncodeReport report = prepared_.report;
+    if (drops_colors_ && !prepared_.original.input.appearance.empty())
+        report.warnings.push_back("tiles hold no colours; those of the input are left out");
+    const bool may_grow = now.side == options_.side;  // smaller sides are trials
+    const Observer observer = std::exchange(observer_, {});
+    GIM_TRY(images, layout_.make({prepared_.mesh, now, clock_, observer, report, cuts_, tileable_, may_grow}));
+    started.run = std::make_unique<FileRun>(std::move(images), prepared_.original, now, clock_, std::move(report));
+    return &started;
+}
+
+Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional<double> near) {
+    GIM_TRY(started, start(now));
+    if (!started->estimate) {
+        GIM_TRY(estimate, started->run->estimate(near));
+        started->estimate = estimate;
+    }
+    return *started->estimate;
+}
+
+Result<Estimate> LayoutRuns::estimate() {
+    const bool is_tiles = layout() == Layout::kTiles;
+    Result<Estimate> best = Error{};
+    std::optional<double> near;
+    for (const EncodeOptions& variant : is_tiles ? tile_variants(options_) : side_variants(options_)) {
+        const auto now = estimate_of(variant, near);
+        if (now.ok() && is_tiles) near = now.value().quantizer;
+        const bool is_better = now.ok() && (!best.ok() || now.value().log_bytes < best.value().log_bytes);
+        if (is_better || !(now.ok() || best.ok())) best = now;
+    }
+    return best;
+}
+
+Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {
+    const CodingRuns runs = {.code = [&](const EncodeOptions& variant, const Contest& among) -> Result<Encoded> {
+                                 GIM_TRY(started, start(variant));
+                                 auto encoded = started->run->finish(joined(among, contest));
+                                 started_.erase({variant.side, variant.tiles});
+                                 return encoded;
+                             },
+                             .estimate = [&](const EncodeOptions& variant,
+                                             std::optional<double> near) { return estimate_of(variant, near); }};
+    return layout() == Layout::kTiles ? best_of_tiles(runs, now, clock_) : best_of_sides(runs, now, clock_);
+}
+
+Result<Encoded> LayoutRuns::best(const Contest& contest) {
+    auto encoded = within_budget(options_, [&](const EncodeOptions& now) {
+        if (now.rate.value != options_.rate.value) {
+            started_.clear();
+            cuts_ = {};
+        }
+        return best_of_variants(now, contest);
+    });
+    started_.clear();
+    return encoded;
+}
+
+}  // namespace gim

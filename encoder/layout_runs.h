@@ -1,0 +1,71 @@
+// All runs of one layout for one surface. A run makes images by one variant of the options and codes them. Variants are
+// sides of the square and numbers of tiles.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "encoder/base/result.h"
+#include "encoder/base/stage_clock.h"
+#include "encoder/code/contest.h"
+#include "encoder/file_run.h"
+#include "encoder/layouts.h"
+#include "encoder/surface/mesh.h"
+#include "gim/encoder.h"
+
+namespace gim {
+
+// The input, ready for a layout. Positions are in the frame.
+struct Prepared {
+    const Mesh& mesh;  // clean
+    const Original original;
+    const EncodeReport& report;  // of the input alone
+};
+
+class LayoutRuns {
+  public:
+    // Keeps references to what it gets, except for the options. observer: sees the first images that are made.
+    LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, const EncodeOptions& options, StageClock& clock,
+               const Observer& observer);
+
+    Layout layout() const { return layout_.layout; }
+
+    // Makes the images of the variants and fits them briefly. Returns what the best one costs. Only for targets that are
+    // searched for. The images wait for best().
+    Result<Estimate> estimate();
+
+    // Returns the best file of all variants. contest: the files of other layouts. A run that is sure to lose ends early;
+    // if all do, returns an Error.
+    Result<Encoded> best(const Contest& contest);
+
+  private:
+    struct Started {
+        std::unique_ptr<FileRun> run;
+        std::optional<Estimate> estimate;
+    };
+    using Variant = std::pair<uint32_t, uint32_t>;  // side, tiles
+
+    Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);
+    Result<Started*> start(const EncodeOptions& now);
+    Result<Estimate> estimate_of(const EncodeOptions& now, std::optional<double> near);
+
+    const LayoutEntry& layout_;
+    const Prepared& prepared_;
+    EncodeOptions options_;
+    StageClock& clock_;
+    Observer observer_;  // none when it has seen images
+    bool drops_colors_;
+    CutPreferences cuts_;                      // chosen at the first side, then kept
+    std::optional<TileableSurface> tileable_;  // serves every number of tiles
+    std::map<Variant, Started> started_;       // that did not end yet
+};
+
+// Returns whether the images could not be made.
+template <class T>
+bool lacks_images(const Result<T>& result) {
+    return !result.ok() && result.error().stage >= Stage::kCut && result.error().stage <= Stage::kFit;
+}
+
+}  // namespace gim

@@ -1,0 +1,112 @@
+#include "encoder/race_layouts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "encoder/code/rate_target.h"
+#include "encoder/layout/encode_once.h"
+#include "encoder/layouts.h"
+#include "encoder/planes/make_planes.h"
+
+namespace gim {
+
+namespace {
+
+class Race {
+  public:
+    Race(const Prepared& prepared, const EncodeOptions& options, StageClock& clock, const Observer& observer)
+        : prepared_(prepared), options_(options), clock_(clock), observer_(observer) {
+        const bool with_planes = wants_planes(prepared.original.input, options);
+        for (const LayoutEntry& entry : all_layouts()) {
+            if (entry.races && (entry.holds_planes || !with_planes)) entries_.push_back(&entry);
+        }
+    }
+
+    Result<Encoded> run() {
+        if (!is_searched(options_.rate)) set_the_pace();
+        line_up();
+        for (Racer& racer : racers_) {
+            if (!racer.has_chance(best_)) continue;
+            const Contest contest = best_ && best_->ok() ? contest_with(*best_) : Contest{};
+            take(racer.runs->best(contest));
+        }
+        if (best_->ok()) {
+            best_->value().report.times = clock_.times();
+            best_->value().report.seconds = clock_.seconds();
+        }
+        return std::move(*best_);
+    }
+
+  private:
+    struct Racer {
+        std::unique_ptr<LayoutRuns> runs;
+        std::optional<double> log_bytes;  // of brief fits; nothing if they are not known
+
+        bool has_chance(const std::optional<Result<Encoded>>& best) const {
+            if (!best || !best->ok() || !log_bytes) return true;
+            const Encoded& rival = best->value();
+            const double to_beat = gim::log_bytes(double(rival.bytes.size()), rival.report.error.psnr);
+            return *log_bytes < to_beat + std::log1p(RateSearchValues::kQuickExcess);
+        }
+    };
+
+    // The first layout that can make images codes them at the quality that is asked for. The others must reach its PSNR.
+    void set_the_pace() {
+        while (!entries_.empty() && !(best_ && best_->ok())) {
+            take(LayoutRuns(*entries_.front(), prepared_, options_, clock_, observer_).best({}));
+            entries_.erase(entries_.begin());
+        }
+        if (best_->ok()) options_.rate = {RateTarget::Kind::kPsnr, best_->value().report.error.psnr};
+    }
+
+    // Estimates what each layout costs, the cheapest first.
+    void line_up() {
+        for (const LayoutEntry* entry : entries_) {
+            Racer racer{std::make_unique<LayoutRuns>(*entry, prepared_, options_, clock_, observer_), {}};
+            const bool is_alone = entries_.size() == 1 && !best_;
+            if (!is_alone) {
+                const auto estimate = racer.runs->estimate();
+                if (lacks_images(estimate)) {
+                    take(estimate.error());
+                    continue;
+                }
+                if (estimate.ok()) racer.log_bytes = estimate.value().log_bytes;
+            }
+            racers_.push_back(std::move(racer));
+        }
+        const auto cost = [](const Racer& racer) { return racer.log_bytes.value_or(HUGE_VAL); };
+        std::stable_sort(racers_.begin(), racers_.end(),
+                         [&](const Racer& a, const Racer& b) { return cost(a) < cost(b); });
+    }
+
+    void take(Result<Encoded> encoded) {
+        if (!best_ || improves(encoded, *best_, options_.rate)) best_.emplace(std::move(encoded));
+    }
+
+    const Prepared& prepared_;
+    EncodeOptions options_;
+    StageClock& clock_;
+    const Observer& observer_;
+    std::vector<const LayoutEntry*> entries_;
+    std::vector<Racer> racers_;
+    std::optional<Result<Encoded>> best_;  // or the first error
+};
+
+}  // namespace
+
+Result<Encoded> race_layouts(const Prepared& prepared, const EncodeOptions& options, StageClock& clock,
+                             const Observer& observer) {
+    auto best = Race(prepared, options, clock, observer).run();
+    for (const LayoutEntry& entry : all_layouts()) {
+        if (entry.races || !lacks_images(best)) continue;
+        auto other = LayoutRuns(entry, prepared, options, clock, observer).best({});
+        if (other.ok()) return other;
+    }
+    return best;
+}
+
+}  // namespace gim
