@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -30,14 +31,16 @@ class Race {
         if (!is_searched(options_.rate)) set_the_pace();
         line_up();
         for (Racer& racer : racers_) {
-            if (!racer.has_chance(best_)) continue;
-            const Contest contest = best_ && best_->ok() ? contest_with(*best_) : Contest{};
-            take(racer.runs->best(contest));
+            if (racer.has_chance(best_)) {
+                const Contest contest = best_ && best_->ok() ? contest_with(*best_) : Contest{};
+                auto encoded = racer.runs->best(contest);
+                const bool has_cost = note_cost(encoded);
+                take(std::move(encoded));
+                if (has_cost) continue;
+            }
+            note_estimate(racer);
         }
-        if (best_->ok()) {
-            best_->value().report.times = clock_.times();
-            best_->value().report.seconds = clock_.seconds();
-        }
+        if (best_->ok()) complete(best_->value().report);
         return std::move(*best_);
     }
 
@@ -57,7 +60,9 @@ class Race {
     // The first layout that can make images codes them at the quality that is asked for. The others must reach its PSNR.
     void set_the_pace() {
         while (!entries_.empty() && !(best_ && best_->ok())) {
-            take(LayoutRuns(*entries_.front(), prepared_, options_, clock_, observer_).best({}));
+            auto encoded = LayoutRuns(*entries_.front(), prepared_, options_, clock_, observer_).best({});
+            note_cost(encoded);
+            take(std::move(encoded));
             entries_.erase(entries_.begin());
         }
         if (best_->ok()) options_.rate = {RateTarget::Kind::kPsnr, best_->value().report.error.psnr};
@@ -87,12 +92,34 @@ class Race {
         if (!best_ || improves(encoded, *best_, options_.rate)) best_.emplace(std::move(encoded));
     }
 
+    bool note_cost(const Result<Encoded>& encoded) {
+        if (!encoded.ok()) return false;
+        const EncodeReport& report = encoded.value().report;
+        costs_.push_back({report.layout, double(report.file_bytes), report.error.psnr, false});
+        return true;
+    }
+
+    void note_estimate(const Racer& racer) {
+        if (!racer.log_bytes) return;
+        const double bytes = bytes_at(options_.rate, *racer.log_bytes);
+        costs_.push_back({racer.runs->layout(), bytes, psnr_at(bytes, *racer.log_bytes), true});
+    }
+
+    // The report of the winner.
+    void complete(EncodeReport& report) const {
+        report.times = clock_.times();
+        report.seconds = clock_.seconds();
+        std::copy_if(costs_.begin(), costs_.end(), std::back_inserter(report.others),
+                     [&](const LayoutCost& cost) { return cost.layout != report.layout; });
+    }
+
     const Prepared& prepared_;
     EncodeOptions options_;
     StageClock& clock_;
     const Observer& observer_;
     std::vector<const LayoutEntry*> entries_;
     std::vector<Racer> racers_;
+    std::vector<LayoutCost> costs_;
     std::optional<Result<Encoded>> best_;  // or the first error
 };
 

@@ -74,6 +74,11 @@ std::string describe_repairs(const Repairs& repairs) {
     return text;
 }
 
+std::string describe_cost(const LayoutCost& cost) {
+    return (cost.is_estimate ? "about " : "") + with_thousands(static_cast<uint64_t>(cost.bytes)) + " bytes, " +
+           fixed(cost.psnr, 2) + " dB";
+}
+
 std::string summary(const EncodeCommand& command, const EncodeReport& report) {
     std::string text;
     const auto print_line = [&](const std::string& line) { text += line + "\n"; };
@@ -84,6 +89,9 @@ std::string summary(const EncodeCommand& command, const EncodeReport& report) {
         print_line(format_line("repairs", repairs));
     if (report.topology.components > 1)
         print_line(format_line("components", with_thousands(report.topology.components)));
+    print_line(format_line("layout", name_of(report.layout)));
+    for (const LayoutCost& cost : report.others)
+        print_line(format_line(("  not " + std::string(name_of(cost.layout))).c_str(), describe_cost(cost)));
     print_line(
         format_line("image", std::to_string(report.width) + " x " + std::to_string(report.height) +
                                  (report.images > 1 ? ", the largest of " + std::to_string(report.images) : "")));

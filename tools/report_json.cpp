@@ -1,5 +1,7 @@
 #include "tools/report_json.h"
 
+#include <cmath>
+
 namespace gim {
 
 using nlohmann::ordered_json;
@@ -70,8 +72,6 @@ ordered_json to_json(const Repairs& repairs) {
             {"inside_out", repairs.inside_out}};
 }
 
-namespace {
-
 const char* name_of(Layout layout) {
     switch (layout) {
         case Layout::kMcgim:
@@ -84,8 +84,6 @@ const char* name_of(Layout layout) {
     }
     return "gim";
 }
-
-}  // namespace
 
 ordered_json to_json(const EncodeReport& report) {
     ordered_json planes = ordered_json::array();
@@ -111,12 +109,20 @@ ordered_json to_json(const EncodeReport& report) {
                           {"psnr", level.psnr},
                           {"defects", to_json(level.defects)}});
     }
+    ordered_json others = ordered_json::array();
+    for (const LayoutCost& cost : report.others) {
+        others.push_back({{"layout", name_of(cost.layout)},
+                          {"bytes", std::round(cost.bytes)},
+                          {"psnr", cost.psnr},
+                          {"is_estimate", cost.is_estimate}});
+    }
     return {{"input_vertices", report.input_vertices},
             {"input_triangles", report.input_triangles},
             {"repairs", to_json(report.repairs)},
             {"warnings", report.warnings},
             {"topology", to_json(report.topology)},
             {"layout", name_of(report.layout)},
+            {"others", others},
             {"images", report.images},
             {"width", report.width},
             {"height", report.height},

@@ -283,6 +283,13 @@ struct PlaneReport {
     double psnr = 0;        // kColors: dB, of sRGB values
 };
 
+// What another layout would cost for the same target. kMaxError: both figures are those of files with about that error.
+struct LayoutCost {
+    Layout layout = Layout::kGim;
+    double bytes = 0, psnr = 0;  // of the whole file; of the decoded surface, in dB
+    bool is_estimate = false;    // true: from a brief fit, which takes 5 to 10 % more bytes than a full one
+};
+
 // Figures of one run, in the order they become known.
 struct EncodeReport {
     uint64_t input_vertices = 0, input_triangles = 0;  // as read
@@ -290,6 +297,7 @@ struct EncodeReport {
     std::vector<std::string> warnings;                 // for people, a line each
     TopologySummary topology;                          // of the cleaned mesh
     Layout layout = Layout::kGim;                      // the one used; never kAuto
+    std::vector<LayoutCost> others;                    // kAuto, lossy: the layouts that lost
     uint32_t images = 0;                               // kGim: one per component; else 1
     uint32_t width = 0, height = 0;                    // of the largest image
     uint64_t samples = 0;                              // of all images
