@@ -15,16 +15,19 @@ namespace {
 
 // Weight of the moved area times the squared distance, against the quadric error. Larger values lose the tips of limbs.
 constexpr double kLengthWeight = 1e-3;
-// Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 // Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
 // near its root, so the quadric does not notice that its tip vanishes.
 constexpr double kTipWeight = 3;
+// Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 constexpr double kFeatureWeight = 1;
 // Cosine of the largest angle by which a collapse may turn a face.
 constexpr double kLeastCosine = 0.2, kLeastLooseCosine = -0.3;
 // Longest edge over height, times sqrt(3)/2: 1 for the equilateral triangle. Above kNeedle only what is no worse than before.
 constexpr double kNeedle = 12, kLooseNeedle = 60;
 constexpr double kWidestFan = 1.5 * std::numbers::pi, kWidestLooseFan = 1.9 * std::numbers::pi;
+// In the tiles a corner of a face is about 60 degrees wide, whatever it is on the surface. A vertex comes back into the
+// fan of faces that it left behind, and that must be narrower than a full turn.
+constexpr size_t kMostEdges = 12, kMostLooseFanFaces = 4;
 constexpr double kNeedleWeight = 0.15;
 constexpr double kFanWeight = 0.5;
 constexpr double kValenceWeight = 0.1;
@@ -149,6 +152,14 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     return true;
 }
 
+// Whether the kept vertex gets more edges, or the fan more faces, than the map can undo.
+bool CollapseCost::crowds(size_t onto, Rules rules) const {
+    size_t sides = 0;
+    for (size_t i = 0; i < spokes_.size(); ++i) sides += i != onto && joins(i, onto);
+    if (mesh_.edge_count(spokes_[onto].end) + spokes_.size() - 2 - sides > kMostEdges) return true;
+    return rules >= Rules::kLooseShape && face_count() - sides > kMostLooseFanFaces;
+}
+
 double CollapseCost::fan(size_t onto) const {
     double angle = 0;
     for (size_t i = 0; i < face_count(); ++i) {
@@ -171,7 +182,6 @@ double CollapseCost::squared_gap(size_t onto) const {
 }
 
 std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const {
-    if (rules >= Rules::kTopology) return 1;
     const bool loose = rules >= Rules::kLooseShape;
     const Vec3 old_place = mesh_.place(centre_);
     const Vec3& new_place = spokes_[onto].at;
@@ -260,7 +270,7 @@ std::optional<double> CollapseCost::cost(size_t onto, Rules rules, double limit)
     const double irregular = valence_factor(onto) * variation(onto);
     // Each term makes it dearer, so the dear ones are looked at last.
     double cost = (error + kLengthWeight * length) * irregular;
-    if (cost >= limit || !features_allow(onto, rules)) return {};
+    if (cost >= limit || crowds(onto, rules) || !features_allow(onto, rules)) return {};
     cost += kTipWeight * mine.area * squared_gap(onto) * irregular;
     if (cost >= limit) return {};
     if (makes_doublet(onto)) cost *= kDoubletFactor;

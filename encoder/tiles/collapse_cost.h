@@ -73,6 +73,7 @@ class CollapseCost {
 
     bool features_allow(size_t onto, Rules rules) const;
     bool feature_after(size_t spoke, size_t onto) const;
+    bool crowds(size_t onto, Rules rules) const;
     bool boundary_stays_long(size_t onto) const;
     // How much the shape of the new faces multiplies the cost; nothing if they are forbidden.
     std::optional<double> shape_factor(size_t onto, Rules rules) const;
