@@ -135,15 +135,11 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     }
     if (features != 0 && features != 2 && !(features == 1 && rules >= Rules::kLooseShape) && rules < Rules::kTopology)
         return false;
-    if (rules >= Rules::kTopology) return true;
     for (size_t i = 0; i < spokes_.size(); ++i) {
-        if (i != onto && joins(i, onto) && spokes_[i].feature) {
-            // Two features would become one.
-            const bool rim =
-                (i < face_count() && after(i) == onto) ? spokes_[i].rim_feature : spokes_[onto].rim_feature;
-            if (rim) return false;
-        }
+        // A face between two features of the vertex would lie on the straight line that they become.
+        if (i != onto && joins(i, onto) && spokes_[i].feature && (!closed_ || features == 2)) return false;
     }
+    if (rules >= Rules::kTopology) return true;
     for (size_t i = 0; i < face_count(); ++i) {
         if (vanishes(i, onto) || !spokes_[i].rim_feature) continue;
         const bool before = spokes_[i].feature && spokes_[after(i)].feature;
@@ -152,20 +148,32 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     return true;
 }
 
-// Whether the kept vertex gets more edges, or the fan more faces, than the map can undo.
-bool CollapseCost::crowds(size_t onto, Rules rules) const {
+// Whether the kept vertex gets more edges than the map can undo.
+bool CollapseCost::crowds(size_t onto) const {
     size_t sides = 0;
     for (size_t i = 0; i < spokes_.size(); ++i) sides += i != onto && joins(i, onto);
-    if (mesh_.edge_count(spokes_[onto].end) + spokes_.size() - 2 - sides > kMostEdges) return true;
-    return rules >= Rules::kLooseShape && face_count() - sides > kMostLooseFanFaces;
+    return mesh_.edge_count(spokes_[onto].end) + spokes_.size() - 2 - sides > kMostEdges;
 }
 
-double CollapseCost::fan(size_t onto) const {
-    double angle = 0;
-    for (size_t i = 0; i < face_count(); ++i) {
-        if (!vanishes(i, onto)) angle += angle_at(spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at);
+// The faces that the vertex leaves behind. A vertex on a feature comes back on a straight line between two sides. So each
+// side counts as half of a fan, and the wider one decides.
+CollapseCost::Fan CollapseCost::fan(size_t onto) const {
+    const bool on_line = spokes_[onto].feature;
+    Fan side{}, widest{};
+    const auto close_side = [&] {
+        if (side.angle > widest.angle) widest.angle = side.angle;
+        if (side.faces > widest.faces) widest.faces = side.faces;
+        side = {};
+    };
+    for (size_t i = after(onto); i != onto; i = after(i)) {
+        if (on_line && spokes_[i].feature) close_side();
+        if (i >= face_count() || vanishes(i, onto)) continue;
+        side.angle += angle_at(spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at);
+        ++side.faces;
     }
-    return angle;
+    close_side();
+    if (on_line) widest.angle *= 2, widest.faces *= 2;
+    return widest;
 }
 
 // The squared distance from the vertex to the faces that take the place of its own.
@@ -197,10 +205,11 @@ std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const
         if (slim > (loose ? kLooseNeedle : kNeedle) && slim > slimness(a, b, old_place, before.norm())) return {};
         worst = std::max(worst, slim);
     }
-    const double angle = fan(onto);
-    if (angle > (loose ? kWidestLooseFan : kWidestFan)) return {};
+    const Fan left_behind = fan(onto);
+    if (left_behind.angle > (loose ? kWidestLooseFan : kWidestFan)) return {};
+    if (loose && left_behind.faces > kMostLooseFanFaces) return {};
     return 1 + kNeedleWeight * squared(std::min(worst, kLooseNeedle) - 1) +
-           kFanWeight * squared(squared(angle / std::numbers::pi));
+           kFanWeight * squared(squared(left_behind.angle / std::numbers::pi));
 }
 
 double CollapseCost::valence_factor(size_t onto) const {
@@ -270,7 +279,7 @@ std::optional<double> CollapseCost::cost(size_t onto, Rules rules, double limit)
     const double irregular = valence_factor(onto) * variation(onto);
     // Each term makes it dearer, so the dear ones are looked at last.
     double cost = (error + kLengthWeight * length) * irregular;
-    if (cost >= limit || crowds(onto, rules) || !features_allow(onto, rules)) return {};
+    if (cost >= limit || crowds(onto) || !features_allow(onto, rules)) return {};
     cost += kTipWeight * mine.area * squared_gap(onto) * irregular;
     if (cost >= limit) return {};
     if (makes_doublet(onto)) cost *= kDoubletFactor;
