@@ -15,16 +15,19 @@ namespace {
 
 // Weight of the moved area times the squared distance, against the quadric error. Larger values lose the tips of limbs.
 constexpr double kLengthWeight = 1e-3;
-// Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 // Weight of the moved area times the squared distance from the vertex to what is left. The planes of a thin limb all pass
 // near its root, so the quadric does not notice that its tip vanishes.
 constexpr double kTipWeight = 3;
+// Weight of a plane across a feature, in squared lengths, against the areas of the faces.
 constexpr double kFeatureWeight = 1;
 // Cosine of the largest angle by which a collapse may turn a face.
 constexpr double kLeastCosine = 0.2, kLeastLooseCosine = -0.3;
 // Longest edge over height, times sqrt(3)/2: 1 for the equilateral triangle. Above kNeedle only what is no worse than before.
 constexpr double kNeedle = 12, kLooseNeedle = 60;
 constexpr double kWidestFan = 1.5 * std::numbers::pi, kWidestLooseFan = 1.9 * std::numbers::pi;
+// In the tiles a corner of a face is about 60 degrees wide, whatever it is on the surface. A vertex comes back into the
+// fan of faces that it left behind, and that must be narrower than a full turn.
+constexpr size_t kMostEdges = 12, kMostLooseFanFaces = 4;
 constexpr double kNeedleWeight = 0.15;
 constexpr double kFanWeight = 0.5;
 constexpr double kValenceWeight = 0.1;
@@ -132,15 +135,11 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     }
     if (features != 0 && features != 2 && !(features == 1 && rules >= Rules::kLooseShape) && rules < Rules::kTopology)
         return false;
-    if (rules >= Rules::kTopology) return true;
     for (size_t i = 0; i < spokes_.size(); ++i) {
-        if (i != onto && joins(i, onto) && spokes_[i].feature) {
-            // Two features would become one.
-            const bool rim =
-                (i < face_count() && after(i) == onto) ? spokes_[i].rim_feature : spokes_[onto].rim_feature;
-            if (rim) return false;
-        }
+        // A face between two features of the vertex would lie on the straight line that they become.
+        if (i != onto && joins(i, onto) && spokes_[i].feature && (!closed_ || features == 2)) return false;
     }
+    if (rules >= Rules::kTopology) return true;
     for (size_t i = 0; i < face_count(); ++i) {
         if (vanishes(i, onto) || !spokes_[i].rim_feature) continue;
         const bool before = spokes_[i].feature && spokes_[after(i)].feature;
@@ -149,12 +148,32 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     return true;
 }
 
-double CollapseCost::fan(size_t onto) const {
-    double angle = 0;
-    for (size_t i = 0; i < face_count(); ++i) {
-        if (!vanishes(i, onto)) angle += angle_at(spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at);
+// Whether the kept vertex gets more edges than the map can undo.
+bool CollapseCost::crowds(size_t onto) const {
+    size_t sides = 0;
+    for (size_t i = 0; i < spokes_.size(); ++i) sides += i != onto && joins(i, onto);
+    return mesh_.edge_count(spokes_[onto].end) + spokes_.size() - 2 - sides > kMostEdges;
+}
+
+// The faces that the vertex leaves behind. A vertex on a feature comes back on a straight line between two sides. So each
+// side counts as half of a fan, and the wider one decides.
+CollapseCost::Fan CollapseCost::fan(size_t onto) const {
+    const bool on_line = spokes_[onto].feature;
+    Fan side{}, widest{};
+    const auto close_side = [&] {
+        if (side.angle > widest.angle) widest.angle = side.angle;
+        if (side.faces > widest.faces) widest.faces = side.faces;
+        side = {};
+    };
+    for (size_t i = after(onto); i != onto; i = after(i)) {
+        if (on_line && spokes_[i].feature) close_side();
+        if (i >= face_count() || vanishes(i, onto)) continue;
+        side.angle += angle_at(spokes_[onto].at, spokes_[i].at, spokes_[after(i)].at);
+        ++side.faces;
     }
-    return angle;
+    close_side();
+    if (on_line) widest.angle *= 2, widest.faces *= 2;
+    return widest;
 }
 
 // The squared distance from the vertex to the faces that take the place of its own.
@@ -171,7 +190,6 @@ double CollapseCost::squared_gap(size_t onto) const {
 }
 
 std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const {
-    if (rules >= Rules::kTopology) return 1;
     const bool loose = rules >= Rules::kLooseShape;
     const Vec3 old_place = mesh_.place(centre_);
     const Vec3& new_place = spokes_[onto].at;
@@ -187,10 +205,11 @@ std::optional<double> CollapseCost::shape_factor(size_t onto, Rules rules) const
         if (slim > (loose ? kLooseNeedle : kNeedle) && slim > slimness(a, b, old_place, before.norm())) return {};
         worst = std::max(worst, slim);
     }
-    const double angle = fan(onto);
-    if (angle > (loose ? kWidestLooseFan : kWidestFan)) return {};
+    const Fan left_behind = fan(onto);
+    if (left_behind.angle > (loose ? kWidestLooseFan : kWidestFan)) return {};
+    if (loose && left_behind.faces > kMostLooseFanFaces) return {};
     return 1 + kNeedleWeight * squared(std::min(worst, kLooseNeedle) - 1) +
-           kFanWeight * squared(squared(angle / std::numbers::pi));
+           kFanWeight * squared(squared(left_behind.angle / std::numbers::pi));
 }
 
 double CollapseCost::valence_factor(size_t onto) const {
@@ -260,7 +279,7 @@ std::optional<double> CollapseCost::cost(size_t onto, Rules rules, double limit)
     const double irregular = valence_factor(onto) * variation(onto);
     // Each term makes it dearer, so the dear ones are looked at last.
     double cost = (error + kLengthWeight * length) * irregular;
-    if (cost >= limit || !features_allow(onto, rules)) return {};
+    if (cost >= limit || crowds(onto) || !features_allow(onto, rules)) return {};
     cost += kTipWeight * mine.area * squared_gap(onto) * irregular;
     if (cost >= limit) return {};
     if (makes_doublet(onto)) cost *= kDoubletFactor;

@@ -73,6 +73,7 @@ class CollapseCost {
 
     bool features_allow(size_t onto, Rules rules) const;
     bool feature_after(size_t spoke, size_t onto) const;
+    bool crowds(size_t onto) const;
     bool boundary_stays_long(size_t onto) const;
     // How much the shape of the new faces multiplies the cost; nothing if they are forbidden.
     std::optional<double> shape_factor(size_t onto, Rules rules) const;
@@ -81,8 +82,11 @@ class CollapseCost {
     double valence_factor(size_t onto) const;
     // Whether the collapse leaves faces that cannot be paired without a vertex of two quads.
     bool makes_doublet(size_t onto);
-    // The angle at the kept vertex of the faces that take the place of the old ones, in radians.
-    double fan(size_t onto) const;
+    struct Fan {
+        double angle;  // at the kept vertex, in radians
+        size_t faces;
+    };
+    Fan fan(size_t onto) const;
     // Nothing if it is forbidden, or costs no less than `limit`.
     std::optional<double> cost(size_t onto, Rules rules, double limit);
 

@@ -1,5 +1,6 @@
 #include "encoder/tiles/make_tiles.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,11 +28,34 @@ uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
     return exponent;
 }
 
-Result<TileBase> find_base(const TileableSurface& surface, uint32_t tiles) {
-    TileBase base = make_tile_base(surface.input, surface.hierarchy, 2 * tiles);
-    if (base.pairing.unpaired.empty()) return base;
-    return Error{Stage::kCut, std::to_string(base.pairing.unpaired.size()) +
-                                  " triangles of the base mesh do not pair into tiles; take another layout"};
+struct MappedBase {
+    TileBase tiles;
+    TileMap map;
+};
+
+// Vertices that the map may leave out, one of so many. A vertex without a place takes those with it that came from it, so
+// a base that is too coarse for its handles loses most of them, and others hardly any.
+constexpr size_t kLeftOutOf = 1000;
+
+// Makes a base of about so many tiles, or the first larger one that pairs and maps.
+Result<MappedBase> find_base(const TileableSurface& surface, uint32_t tiles, const TileMapOptions& options,
+                             StageClock& clock) {
+    const Mesh& dense = surface.input.mesh;
+    for (size_t wanted = tiles;; wanted += wanted / 4 + 1) {
+        clock.begin(Stage::kCut);
+        TileBase base = make_tile_base(surface.input, surface.hierarchy, static_cast<uint32_t>(2 * wanted));
+        const bool finest = base.base.triangles.size() == dense.triangles.size();
+        wanted = std::max(wanted, base.base.triangles.size() / 2);
+        if (!base.pairing.unpaired.empty()) {
+            if (!finest) continue;
+            return Error{Stage::kCut, std::to_string(base.pairing.unpaired.size()) +
+                                          " triangles of the base mesh do not pair into tiles; take another layout"};
+        }
+        clock.begin(Stage::kParametrize);
+        GIM_TRY(map, map_tiles(dense, base.base, base.pairing.quads, options, clock.progress()));
+        if (finest || map.left_out.size() <= dense.positions.size() / kLeftOutOf)
+            return MappedBase{std::move(base), std::move(map)};
+    }
 }
 
 struct Sampled {
@@ -77,16 +101,12 @@ TileableSurface make_tileable(const Mesh& mesh) {
 
 Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, const EncodeOptions& options,
                              StageClock& clock) {
-    clock.begin(Stage::kCut);
-    GIM_TRY(tiles, find_base(surface, options.tiles));
-    const auto& [base, pairing] = tiles;
     const Mesh& dense = surface.input.mesh;
-
-    clock.begin(Stage::kParametrize);
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     TileMapOptions map_options;
     map_options.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    GIM_TRY(map, map_tiles(dense, base, pairing.quads, map_options, clock.progress()));
+    GIM_TRY(found, find_base(surface, options.tiles, map_options, clock));
+    auto& [tiles, map] = found;
     MadeTiles made;
     made.stretch_efficiency = stretch_efficiency(dense.positions, map);
 
@@ -94,7 +114,7 @@ Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, c
     if (options.density) {
         GIM_TRY(first, sample(dense, map, exponent));
         map_options.importance = importance_from(dense, map, first.atlas, lossless);
-        GIM_TRY(adapted, map_tiles(dense, base, pairing.quads, map_options, clock.progress()));
+        GIM_TRY(adapted, map_tiles(dense, tiles.base, tiles.pairing.quads, map_options, clock.progress()));
         map = std::move(adapted);
     }
 

@@ -6,6 +6,7 @@
 #include "encoder/tiles/base_mesh.h"
 #include "encoder/tiles/even_patches.h"
 #include "encoder/tiles/perfect_matching.h"
+#include "encoder/tiles/tile_map.h"
 
 namespace gim {
 
@@ -15,16 +16,30 @@ namespace {
 constexpr uint32_t kMostTries = 120, kFacesTried = 24000, kTriesPerSize = 12;
 // Rounds of pairing that tell whether a base has faults.
 constexpr uint32_t kQuickRounds = 15;
+// A triangle without a partner, and a vertex without a place in the tiles, against a vertex of two quads.
+constexpr size_t kUnpairedFaults = 1000, kLeftOutFaults = 10;
 
 struct Try {
     PartBase base;
     BaseMesh mesh;
     QuadPairing pairing;
+    std::vector<uint32_t> left_out;  // vertices of the part that the map to the tiles has no place for
     size_t faults = SIZE_MAX;
     double damage = 0;
 
     bool better_than(const Try& o) const { return faults != o.faults ? faults < o.faults : damage < o.damage; }
 };
+
+// Vertices that a quick map leaves out. They are those that go late: between base vertices faces have right angles in the
+// tiles, however narrow they are on the surface.
+std::vector<uint32_t> without_place(const Mesh& part, const BaseMesh& base, const QuadPairing& pairing) {
+    TileMapOptions quick;
+    quick.growth = 2;
+    quick.sweeps = quick.final_sweeps = 1;
+    auto map = map_tiles(part, base, pairing.quads, quick);
+    if (map.ok()) return std::move(map.value().left_out);
+    return std::vector<uint32_t>(1, base.triangles[0][0]);
+}
 
 class PartTries {
   public:
@@ -54,10 +69,13 @@ Try PartTries::judge(Decimator& decimator) const {
     make_patches_even(decimator);
     Try result{{decimator.collapses(), decimator.removed_by()},
                base_after(part_.mesh, part_.sharp, decimator.collapses(), decimator.removed_by()),
+               {},
                {}};
     result.pairing = pair_triangles(part_.mesh.positions, result.mesh, kQuickRounds);
     const QuadPairing& p = result.pairing;
-    result.faults = 1000 * p.unpaired.size() + p.crossed.size() + p.doublets.size() + p.twins;
+    if (p.unpaired.empty()) result.left_out = without_place(part_.mesh, result.mesh, p);
+    result.faults = kUnpairedFaults * p.unpaired.size() + kLeftOutFaults * result.left_out.size() + p.crossed.size() +
+                    p.doublets.size() + p.twins;
     result.damage = decimator.damage();
     return result;
 }
@@ -93,7 +111,7 @@ std::vector<bool> unpairable_triangles(const std::vector<Vec3>& positions, const
     return unpairable;
 }
 
-// The vertices of patches that cannot be paired, and those around doublets.
+// The vertices of patches that cannot be paired, those around doublets, and those where the map has no place.
 std::vector<bool> PartTries::near_faults(const Try& before) const {
     std::vector<bool> near(part_.mesh.positions.size(), false), doublet(near.size(), false);
     const std::vector<bool> unpairable = unpairable_triangles(part_.mesh.positions, before.mesh);
@@ -103,10 +121,12 @@ std::vector<bool> PartTries::near_faults(const Try& before) const {
         if (!unpairable[f] && !doublet[t[0]] && !doublet[t[1]] && !doublet[t[2]]) continue;
         for (const uint32_t v : t) near[v] = true;
     }
-    // Vertices that moved there vary too.
+    std::vector<bool> left_out(near.size(), false);
+    for (const uint32_t v : before.left_out) left_out[v] = true;
     for (size_t i = before.base.collapses.size(); i-- > 0;) {
         const HalfEdgeCollapse& c = before.base.collapses[i];
-        if (near[c.into]) near[c.vertex] = true;
+        if (left_out[c.vertex]) near[c.into] = true;
+        if (near[c.into]) near[c.vertex] = true;  // vertices that moved there vary too
     }
     return near;
 }
