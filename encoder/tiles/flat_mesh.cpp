@@ -213,6 +213,22 @@ bool FlatMesh::move(const std::vector<Spoke>& star, const Vec2& x) {
     for (const Spoke& spoke : star) {
         if (!certainly_left(spoke.p1 - step, spoke.p2 - step)) return false;
     }
+    return move_exactly(star, step);
+}
+
+bool FlatMesh::move_onto(const std::vector<Spoke>& star, uint32_t w) {
+    Vec2 step = Vec2::Zero();
+    for (const Spoke& spoke : star) {
+        if (target(spoke.half_edge) == w) step = spoke.p1;
+    }
+    for (const Spoke& spoke : star) {
+        const bool between = target(spoke.half_edge) == w || origin_[prev(spoke.half_edge)] == w;
+        if (!between && !certainly_left(spoke.p1 - step, spoke.p2 - step)) return false;
+    }
+    return move_exactly(star, step);
+}
+
+bool FlatMesh::move_exactly(const std::vector<Spoke>& star, const Vec2& step) {
     moved_.clear();
     for (const Spoke& spoke : star) {
         FlatFace face = faces_[face_of(spoke.half_edge)];

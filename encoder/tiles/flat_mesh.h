@@ -80,6 +80,11 @@ class FlatMesh {
     // Moves v by x, in the frame of its star, which must be unfolded. Returns false, and changes nothing, if a face
     // would not certainly stay counter-clockwise. x is rounded to the grid.
     bool move(const std::vector<Spoke>& star, const Vec2& x);
+    // Moves v to the place of its neighbour w exactly. Returns false, and changes nothing, if a face besides the two at
+    // their edge would not certainly stay counter-clockwise.
+    bool move_onto(const std::vector<Spoke>& star, uint32_t w);
+    // Gives a face a place that it had before.
+    void set_face(uint32_t f, const FlatFace& face) { faces_[f] = face; }
     // Returns the axis along which a vertex on a side may move (0: x, 1: y), in the frame of its star.
     int side_axis(uint32_t v) const;
 
@@ -93,6 +98,7 @@ class FlatMesh {
         bool slides = false;
     };
     void pair(uint32_t a, uint32_t b);
+    bool move_exactly(const std::vector<Spoke>& star, const Vec2& step);
     bool find_fan(const HalfEdgeCollapse& collapse);
     uint32_t add_face(const Triangle& corners, uint32_t third, uint32_t shared);
     void remove_faces(size_t count);
