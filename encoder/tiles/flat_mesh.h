@@ -40,6 +40,7 @@ class FlatMesh {
     uint32_t target(uint32_t h) const { return origin_[next(h)]; }
     uint32_t twin(uint32_t h) const { return twin_[h]; }
     Triangle triangle(uint32_t f) const { return {origin_[3 * f], origin_[3 * f + 1], origin_[3 * f + 2]}; }
+    const TileWalker& walker() const { return walker_; }
     const FlatFace& face(uint32_t f) const { return faces_[f]; }
     bool present(uint32_t v) const { return outgoing_[v] != kNone; }
     bool on_boundary(uint32_t v) const { return twin_[outgoing_[v]] == kNone; }

@@ -9,6 +9,10 @@ namespace gim {
 namespace {
 
 constexpr int kSettlePasses = 2;  // around a corner that moves, before its energy is compared
+// Part of the room that a stray vertex takes in a step. A step of descent gives a third more room, so it must be less.
+constexpr double kApproach = 0.2;
+// A stray vertex that lies behind its neighbour's corner heads for a place this part of its distance before the corner.
+constexpr double kLeastAlong = 0.25;
 
 void unify(std::vector<uint32_t>& list) {
     std::sort(list.begin(), list.end());
@@ -18,7 +22,7 @@ void unify(std::vector<uint32_t>& list) {
 }  // namespace
 
 TileMapper::TileMapper(FlatMesh& mesh, FaceMetrics metrics, std::vector<Freedom> freedom, std::vector<Quad>& quads)
-    : mesh_(mesh), metrics_(metrics), freedom_(std::move(freedom)), quads_(quads) {
+    : mesh_(mesh), metrics_(metrics), freedom_(std::move(freedom)), side_(freedom_.size(), kNone), quads_(quads) {
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) metric_.push_back(metrics_.of(mesh_.triangle(f)));
 }
 
@@ -87,6 +91,10 @@ bool TileMapper::insert(const HalfEdgeCollapse& collapse, const std::vector<uint
         metric_.resize(mesh_.face_count());
         refresh_metrics(collapse.into);
         return false;
+    }
+    for (const uint32_t w : {v, collapse.into}) {
+        const bool is_new = w == v || side_[w] == kNone;
+        if (is_new && (freedom_[w] == Freedom::kSlides || freedom_[w] == Freedom::kStray)) assign_side(w);
     }
     for (const uint32_t w : {collapse.into, collapse.left, collapse.right, v}) {
         if (w != kNone && freedom_[w] != Freedom::kPinned) relax(w, 2);
@@ -172,11 +180,59 @@ bool TileMapper::winds_once(const Vec2& x, double angle) const {
 std::vector<TileMapper::Neighbour> TileMapper::neighbours_on_side() const {
     std::vector<Neighbour> neighbours;
     for (const Spoke& spoke : spokes_) {
-        const uint32_t h = spoke.half_edge, last = prev(h);
-        if (mesh_.is_side(h)) neighbours.push_back({mesh_.target(h), spoke.p1});
-        if (mesh_.twin(last) == kNone) neighbours.push_back({mesh_.origin(last), spoke.p2});
+        const uint32_t h = spoke.half_edge, first = next(h), last = prev(h);
+        if (mesh_.is_side(h)) neighbours.push_back({mesh_.origin(first), spoke.p1, first, spoke.quarters});
+        if (mesh_.twin(last) == kNone)
+            neighbours.push_back({mesh_.origin(last), spoke.p2, last, spoke.quarters});
     }
     return neighbours;
+}
+
+// Notes to which side of a tile v belongs: that of its neighbours there, or the one between two corners.
+void TileMapper::assign_side(uint32_t v) {
+    mesh_.unfold(v, spokes_);
+    const std::vector<Neighbour> neighbours = neighbours_on_side();
+    side_[v] = kNone;
+    if (neighbours.size() != 2) return;
+    for (const Neighbour& n : neighbours) {
+        if (freedom_[n.vertex] != Freedom::kPinned && side_[n.vertex] != kNone) side_[v] = side_[n.vertex];
+    }
+    if (side_[v] == kNone) side_[v] = side_between(neighbours[0].vertex, neighbours[1].vertex);
+}
+
+// The half-edge of the tiles between two corners, in any direction.
+uint32_t TileMapper::side_between(uint32_t a, uint32_t b) const {
+    for (uint32_t h = 0; h < 4 * quads_.size(); ++h) {
+        const uint32_t from = quads_[tile_of(h)][side_of(h)], to = quads_[tile_of(h)][side_of(next_side(h))];
+        if ((from == a && to == b) || (from == b && to == a)) return h;
+    }
+    return kNone;
+}
+
+// The direction in which a side leads away from a neighbour that lies on it, towards the star's vertex.
+std::optional<Vec2> TileMapper::way_along_side(const Neighbour& neighbour, uint32_t side) const {
+    const Vec2& at = mesh_.place(neighbour.half_edge);
+    if (freedom_[neighbour.vertex] == Freedom::kSlides) {
+        const Vec2 way = turned(at.x() == std::floor(at.x()) ? Vec2(0, 1) : Vec2(1, 0), neighbour.quarters);
+        return way.dot(neighbour.place) > 0 ? Vec2(-way) : way;
+    }
+    if (side == kNone) return std::nullopt;
+    const TileWalker& walker = mesh_.walker();
+    for (uint32_t i = 0; i < 4; ++i) {
+        if (at != TileWalker::corner(i)) continue;
+        const Vec2 way = turned(TileWalker::corner((i + 1) % 4) - at, neighbour.quarters);
+        const uint32_t first = 4 * mesh_.face(face_of(neighbour.half_edge)).tile + i;
+        const auto is_wanted = [&](uint32_t h) { return h == side || walker.mate(h) == side; };
+        uint32_t left = first, right = first;  // half-edges that leave the corner, counter-clockwise and clockwise
+        for (uint32_t turns = 0; turns < 3; ++turns) {
+            if (left != kNoMate && is_wanted(left)) return turned(way, turns);
+            if (right != kNoMate && is_wanted(right)) return turned(way, 4 - turns);
+            if (left != kNoMate) left = walker.mate(previous_side(left));
+            if (right != kNoMate) right = walker.mate(right);
+            if (right != kNoMate) right = next_side(right);
+        }
+    }
+    return std::nullopt;
 }
 
 // Moves a stray vertex back to the side of its tile if a neighbour is there and its star has room; else nearer to it.
@@ -187,39 +243,28 @@ void TileMapper::return_to_side(uint32_t v) {
     for (size_t i = 0; i < 2; ++i) {
         const Neighbour &near = neighbours[i], &other = neighbours[1 - i];
         if (freedom_[near.vertex] == Freedom::kStray) continue;
-        const Vec2 beyond = freedom_[other.vertex] == Freedom::kStray ? beyond_on_side(near) : other.place;
-        const Vec2 at = mesh_.place(spokes_.front().half_edge) + near.place;
-        const bool upright = near.place.x() == beyond.x() && at.x() == std::floor(at.x());
-        const bool level = near.place.y() == beyond.y() && at.y() == std::floor(at.y());
-        if (upright == level) continue;
+        const std::optional<Vec2> way = way_along_side(near, side_[v]);
+        if (!way) continue;
+        const double length = near.place.norm(), along = -near.place.dot(*way);
+        const bool both = freedom_[other.vertex] != Freedom::kStray;
+        const Vec2 beyond = both ? other.place : Vec2(near.place + 2 * length * *way);
         if (place_between(v, near.place, beyond)) {
             freedom_[v] = Freedom::kSlides;
         } else {
-            approach(upright ? Vec2(near.place.x(), 0) : Vec2(0, near.place.y()));
+            approach(near.place + std::max(along, kLeastAlong * length) * *way);
         }
         return;
     }
 }
 
-// Where the side through a neighbour leads past the star's vertex.
-Vec2 TileMapper::beyond_on_side(const Neighbour& neighbour) const {
-    const Vec2& end = neighbour.place;
-    bool along_x = std::abs(end.x()) > std::abs(end.y());
-    if (freedom_[neighbour.vertex] == Freedom::kSlides) {
-        const Vec2 at = mesh_.place(spokes_.front().half_edge) + end;
-        along_x = at.x() != std::floor(at.x());
-    }
-    return along_x ? Vec2(-end.x(), end.y()) : Vec2(end.x(), -end.y());
-}
-
-// Moves the vertex of the star along a way, by half the room that it has.
+// Moves the vertex of the star along a way, by a part of the room that it has.
 void TileMapper::approach(const Vec2& way) {
     double room = 1;
     for (const StarTriangle& t : star_) {
         const double here = cross(t.p1, t.p2), there = cross(t.p1 - way, t.p2 - way);
         if (there < here) room = std::min(room, here / (here - there));
     }
-    mesh_.move(spokes_, 0.5 * room * way);
+    mesh_.move(spokes_, kApproach * room * way);
 }
 
 // ---- corners of tiles -----------------------------------------------------------------------------------------------

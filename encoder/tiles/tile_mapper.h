@@ -49,7 +49,9 @@ class TileMapper {
     };
     struct Neighbour {
         uint32_t vertex;
-        Vec2 place;  // from the star's vertex
+        Vec2 place;          // from the star's vertex
+        uint32_t half_edge;  // leaves the neighbour, in a face of the star
+        uint32_t quarters;   // as that of the face (Spoke)
     };
 
     void refresh_metrics(uint32_t v);
@@ -65,7 +67,9 @@ class TileMapper {
     bool winds_once(const Vec2& x, double angle) const;
 
     std::vector<Neighbour> neighbours_on_side() const;
-    Vec2 beyond_on_side(const Neighbour& neighbour) const;
+    void assign_side(uint32_t v);
+    uint32_t side_between(uint32_t a, uint32_t b) const;
+    std::optional<Vec2> way_along_side(const Neighbour& neighbour, uint32_t side) const;
     void return_to_side(uint32_t v);
     void approach(const Vec2& way);
 
@@ -86,6 +90,7 @@ class TileMapper {
     FaceMetrics metrics_;
     std::vector<FaceMetric> metric_;
     std::vector<Freedom> freedom_;
+    std::vector<uint32_t> side_;  // per vertex that slides or is stray: a half-edge of the tiles, kNone if unknown
     std::vector<Quad>& quads_;
     std::vector<Spoke> spokes_;
     std::vector<StarTriangle> star_;
