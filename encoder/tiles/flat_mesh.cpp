@@ -220,6 +220,7 @@ bool FlatMesh::move_onto(const std::vector<Spoke>& star, uint32_t w) {
     Vec2 step = Vec2::Zero();
     for (const Spoke& spoke : star) {
         if (target(spoke.half_edge) == w) step = spoke.p1;
+        if (origin_[prev(spoke.half_edge)] == w) step = spoke.p2;
     }
     for (const Spoke& spoke : star) {
         const bool between = target(spoke.half_edge) == w || origin_[prev(spoke.half_edge)] == w;

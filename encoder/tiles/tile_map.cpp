@@ -124,7 +124,7 @@ Result<TileMap> map_tiles(const Mesh& dense, const BaseMesh& base, const std::ve
         for (bool found = true; found && !waiting.empty();) {
             std::vector<uint32_t> still;
             for (const uint32_t k : waiting) {
-                if (!mapper.insert(base.collapses[k], rings[k])) still.push_back(k);
+                if (!mapper.insert_with_help(base.collapses[k], rings[k])) still.push_back(k);
             }
             found = still.size() < waiting.size();
             waiting = std::move(still);

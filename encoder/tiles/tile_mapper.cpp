@@ -81,6 +81,49 @@ StarDescent TileMapper::relax(uint32_t v, int steps) {
 
 // ---- vertices that come back ----------------------------------------------------------------------------------------
 
+bool TileMapper::insert_with_help(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
+    if (insert(collapse, ring)) return true;
+    const uint32_t w = collapse.into;
+    return mesh_.present(w) &&
+           (insert_after_bend(collapse, ring) || (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring)));
+}
+
+// Two faces at a vertex of a boundary cannot fill its tiles if these make a full turn. So a neighbour on the boundary
+// moves inside for a while.
+bool TileMapper::insert_after_bend(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
+    for (const uint32_t v : {collapse.left, collapse.right}) {
+        if (v == kNone || freedom_[v] != Freedom::kSlides) continue;
+        const Patch patch = patch_around(v, collapse.into);
+        load_star(v);
+        Vec2 mean = Vec2::Zero();
+        for (const StarTriangle& t : star_) mean += t.p1 + t.p2;
+        approach(mean / static_cast<double>(2 * star_.size()));
+        freedom_[v] = Freedom::kStray;
+        if (insert(collapse, ring)) return true;
+        freedom_[v] = Freedom::kSlides;
+        restore(patch);
+    }
+    return false;
+}
+
+bool TileMapper::insert_after_move(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
+    const uint32_t w = collapse.into;
+    for (const uint32_t v : successors_of(w)) {
+        const Patch patch = patch_around(v, w);
+        const Freedom freedom = freedom_[v];
+        if (exchange(v, w)) {
+            rename_corner(w, v);
+            if (freedom == Freedom::kSlides) assign_side(w);
+            if (insert(collapse, ring)) return true;
+            rename_corner(v, w);
+        }
+        restore(patch);
+        freedom_[v] = freedom;
+        freedom_[w] = Freedom::kPinned;
+    }
+    return false;
+}
+
 bool TileMapper::insert(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
     if (!mesh_.split(collapse, ring)) return false;
     const uint32_t v = collapse.vertex;
@@ -106,7 +149,7 @@ bool TileMapper::insert(const HalfEdgeCollapse& collapse, const std::vector<uint
 bool TileMapper::find_place(uint32_t v, uint32_t into) {
     load_star(v);
     if (freedom_[v] == Freedom::kSlides) {
-        for (const Neighbour& n : neighbours_on_side()) {
+        for (const Neighbour& n : neighbours_on_side(spokes_)) {
             if (n.vertex != into) return place_between(v, Vec2::Zero(), n.place);
         }
         return false;
@@ -176,10 +219,10 @@ bool TileMapper::winds_once(const Vec2& x, double angle) const {
 
 // ---- creases and boundaries -----------------------------------------------------------------------------------------
 
-// The neighbours along creases and boundaries of the vertex whose star is loaded.
-std::vector<TileMapper::Neighbour> TileMapper::neighbours_on_side() const {
+// The neighbours of a star's vertex along creases and boundaries.
+std::vector<TileMapper::Neighbour> TileMapper::neighbours_on_side(const std::vector<Spoke>& star) const {
     std::vector<Neighbour> neighbours;
-    for (const Spoke& spoke : spokes_) {
+    for (const Spoke& spoke : star) {
         const uint32_t h = spoke.half_edge, first = next(h), last = prev(h);
         if (mesh_.is_side(h)) neighbours.push_back({mesh_.origin(first), spoke.p1, first, spoke.quarters});
         if (mesh_.twin(last) == kNone)
@@ -191,7 +234,7 @@ std::vector<TileMapper::Neighbour> TileMapper::neighbours_on_side() const {
 // Notes to which side of a tile v belongs: that of its neighbours there, or the one between two corners.
 void TileMapper::assign_side(uint32_t v) {
     mesh_.unfold(v, spokes_);
-    const std::vector<Neighbour> neighbours = neighbours_on_side();
+    const std::vector<Neighbour> neighbours = neighbours_on_side(spokes_);
     side_[v] = kNone;
     if (neighbours.size() != 2) return;
     for (const Neighbour& n : neighbours) {
@@ -209,13 +252,29 @@ uint32_t TileMapper::side_between(uint32_t a, uint32_t b) const {
     return kNone;
 }
 
-// The direction in which a side leads away from a neighbour that lies on it, towards the star's vertex.
-std::optional<Vec2> TileMapper::way_along_side(const Neighbour& neighbour, uint32_t side) const {
-    const Vec2& at = mesh_.place(neighbour.half_edge);
-    if (freedom_[neighbour.vertex] == Freedom::kSlides) {
-        const Vec2 way = turned(at.x() == std::floor(at.x()) ? Vec2(0, 1) : Vec2(1, 0), neighbour.quarters);
-        return way.dot(neighbour.place) > 0 ? Vec2(-way) : way;
+// The direction in which a side leads on from a neighbour that lies on it, towards the vertex v whose star is loaded.
+std::optional<Vec2> TileMapper::way_along_side(uint32_t v, const Neighbour& neighbour) const {
+    return freedom_[neighbour.vertex] == Freedom::kPinned ? way_from_corner(neighbour, side_[v])
+                                                          : way_past(neighbour, v);
+}
+
+// From a neighbour that slides: away from its other neighbour.
+std::optional<Vec2> TileMapper::way_past(const Neighbour& neighbour, uint32_t v) const {
+    std::vector<Spoke> star;
+    mesh_.unfold(neighbour.vertex, star);
+    for (const Neighbour& other : neighbours_on_side(star)) {
+        if (other.vertex == v || freedom_[other.vertex] == Freedom::kStray) continue;
+        for (const Spoke& spoke : star) {
+            if (spoke.half_edge != neighbour.half_edge) continue;
+            const Vec2 way = turned(-other.place, neighbour.quarters + 4 - spoke.quarters);
+            return Vec2(way / way.norm());
+        }
     }
+    return std::nullopt;
+}
+
+std::optional<Vec2> TileMapper::way_from_corner(const Neighbour& neighbour, uint32_t side) const {
+    const Vec2& at = mesh_.place(neighbour.half_edge);
     if (side == kNone) return std::nullopt;
     const TileWalker& walker = mesh_.walker();
     for (uint32_t i = 0; i < 4; ++i) {
@@ -238,12 +297,12 @@ std::optional<Vec2> TileMapper::way_along_side(const Neighbour& neighbour, uint3
 // Moves a stray vertex back to the side of its tile if a neighbour is there and its star has room; else nearer to it.
 void TileMapper::return_to_side(uint32_t v) {
     load_star(v);
-    const std::vector<Neighbour> neighbours = neighbours_on_side();
+    const std::vector<Neighbour> neighbours = neighbours_on_side(spokes_);
     if (neighbours.size() != 2) return;
     for (size_t i = 0; i < 2; ++i) {
         const Neighbour &near = neighbours[i], &other = neighbours[1 - i];
         if (freedom_[near.vertex] == Freedom::kStray) continue;
-        const std::optional<Vec2> way = way_along_side(near, side_[v]);
+        const std::optional<Vec2> way = way_along_side(v, near);
         if (!way) continue;
         const double length = near.place.norm(), along = -near.place.dot(*way);
         const bool both = freedom_[other.vertex] != Freedom::kStray;
@@ -275,9 +334,7 @@ void TileMapper::approach(const Vec2& way) {
 bool TileMapper::swap(const HalfEdgeCollapse& collapse) {
     const uint32_t v = collapse.vertex, w = collapse.into;
     if (freedom_[w] != Freedom::kPinned) return false;
-    size_t sides = mesh_.on_boundary(w) ? 1 : 0;  // the last edge leaves nothing from w
-    mesh_.for_each_outgoing(w, [&](uint32_t h) { sides += mesh_.is_side(h); });
-    if (sides != (freedom_[v] == Freedom::kSlides ? 2u : 0u)) return false;
+    if (sides_at(w) != (freedom_[v] == Freedom::kSlides ? 2u : 0u)) return false;
     return trade_places(v, w, freedom_[v]);
 }
 
@@ -314,22 +371,36 @@ size_t TileMapper::move_corners() {
     return moved;
 }
 
-bool TileMapper::lies_on_side(uint32_t v) const {
-    bool found = mesh_.on_boundary(v);
-    mesh_.for_each_outgoing(v, [&](uint32_t h) { found |= mesh_.is_side(h); });
-    return found;
+size_t TileMapper::sides_at(uint32_t v) const {
+    size_t sides = mesh_.on_boundary(v) ? 1 : 0;  // the last edge leaves nothing from v
+    mesh_.for_each_outgoing(v, [&](uint32_t h) { sides += mesh_.is_side(h); });
+    return sides;
+}
+
+// The neighbours that may take the place of a corner. On creases and boundaries, those before and after it.
+std::vector<uint32_t> TileMapper::successors_of(uint32_t w) {
+    std::vector<uint32_t> successors;
+    const size_t sides = sides_at(w);
+    mesh_.unfold(w, spokes_);
+    if (sides == 2) {
+        for (const Neighbour& n : neighbours_on_side(spokes_)) {
+            if (freedom_[n.vertex] == Freedom::kSlides) successors.push_back(n.vertex);
+        }
+    } else if (sides == 0) {
+        for (const Spoke& spoke : spokes_) {
+            const uint32_t v = mesh_.target(spoke.half_edge);
+            if (freedom_[v] == Freedom::kFree) successors.push_back(v);
+        }
+    }
+    return successors;
 }
 
 // Lets the neighbour of a corner that lowers the energy most take its place.
 bool TileMapper::move_corner(uint32_t w) {
-    if (lies_on_side(w)) return false;
-    std::vector<uint32_t> candidates;
-    mesh_.for_each_outgoing(w, [&](uint32_t h) {
-        if (freedom_[mesh_.target(h)] == Freedom::kFree) candidates.push_back(mesh_.target(h));
-    });
+    if (sides_at(w) != 0) return false;
     double most = 0;
     uint32_t best = kNone;
-    for (const uint32_t v : candidates) {
+    for (const uint32_t v : successors_of(w)) {
         const Patch patch = patch_around(v, w);
         const double before = energy_of(patch);
         if (exchange(v, w)) {
@@ -353,8 +424,8 @@ bool TileMapper::move_corner(uint32_t w) {
 bool TileMapper::exchange(uint32_t v, uint32_t w) {
     mesh_.unfold(v, spokes_);
     if (!mesh_.move_onto(spokes_, w)) return false;
-    mesh_.begin_star_at(w, v);
-    freedom_[w] = Freedom::kFree;
+    if (!mesh_.on_boundary(w)) mesh_.begin_star_at(w, v);
+    freedom_[w] = freedom_[v];
     freedom_[v] = Freedom::kPinned;
     return find_place(w, v);
 }

@@ -34,6 +34,9 @@ class TileMapper {
     // place for it.
     bool insert(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
 
+    // Does the same. If there is no place, neighbours move to make room.
+    bool insert_with_help(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
+
     // Moves corners of tiles over the surface to neighbours where that lowers the energy. Corners on creases and
     // boundaries stay. Returns how many moved.
     size_t move_corners();
@@ -59,6 +62,8 @@ class TileMapper {
     int axis_of(uint32_t v) const { return freedom_[v] == Freedom::kSlides ? mesh_.side_axis(v) : kAnyDirection; }
     StarDescent relax(uint32_t v, int steps);
 
+    bool insert_after_bend(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
+    bool insert_after_move(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
     bool find_place(uint32_t v, uint32_t into);
     bool place_from(const Vec2& start, bool open);
     bool place_between(uint32_t v, const Vec2& first, const Vec2& last);
@@ -66,10 +71,12 @@ class TileMapper {
     bool is_upright(const Vec2& x) const;
     bool winds_once(const Vec2& x, double angle) const;
 
-    std::vector<Neighbour> neighbours_on_side() const;
+    std::vector<Neighbour> neighbours_on_side(const std::vector<Spoke>& star) const;
     void assign_side(uint32_t v);
     uint32_t side_between(uint32_t a, uint32_t b) const;
-    std::optional<Vec2> way_along_side(const Neighbour& neighbour, uint32_t side) const;
+    std::optional<Vec2> way_along_side(uint32_t v, const Neighbour& neighbour) const;
+    std::optional<Vec2> way_from_corner(const Neighbour& neighbour, uint32_t side) const;
+    std::optional<Vec2> way_past(const Neighbour& neighbour, uint32_t v) const;
     void return_to_side(uint32_t v);
     void approach(const Vec2& way);
 
@@ -78,7 +85,8 @@ class TileMapper {
     void rename_corner(uint32_t from, uint32_t to);
 
     std::vector<uint32_t> corners_of_tiles() const;
-    bool lies_on_side(uint32_t v) const;
+    size_t sides_at(uint32_t v) const;
+    std::vector<uint32_t> successors_of(uint32_t w);
     bool move_corner(uint32_t w);
     bool exchange(uint32_t v, uint32_t w);
     Patch patch_around(uint32_t v, uint32_t w) const;
