@@ -64,9 +64,10 @@ class FlatMesh {
     }
 
     // Gives the fan of faces around `into` between left and right back to `vertex`, and the two faces between them.
-    // `vertex` gets the place of `into`. ring: what undone_ring() returned when the collapse was undone in its turn;
-    // empty: anything. Returns false, and changes nothing, if the fan is another one.
-    bool split(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
+    // `vertex` gets the place of `into`. on_side: whether `vertex` lies on a crease or boundary. ring: what last_ring()
+    // returned when the collapse was undone in its turn; empty: anything. Returns false, and changes nothing, if the fan
+    // is another one.
+    bool split(const HalfEdgeCollapse& collapse, bool on_side, const std::vector<uint32_t>& ring);
     // The neighbours of the last split's vertex.
     const std::vector<uint32_t>& last_ring() const { return undo_.ring; }
     // Returns whether the last split's vertex lies on a side.
@@ -99,11 +100,12 @@ class FlatMesh {
         bool slides = false;
     };
     void pair(uint32_t a, uint32_t b);
+    void mark(uint32_t h, bool is_side);
     bool move_exactly(const std::vector<Spoke>& star, const Vec2& step);
     bool find_fan(const HalfEdgeCollapse& collapse);
     uint32_t add_face(const Triangle& corners, uint32_t third, uint32_t shared);
     void remove_faces(size_t count);
-    uint8_t insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex);
+    uint8_t insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex, bool is_ear);
     void restore_outgoing(uint32_t left_face, uint32_t right_face);
 
     const TileWalker& walker_;

@@ -19,10 +19,11 @@ namespace {
 constexpr int kBaseSweeps = 50;
 
 // Undoes all collapses without any geometry. Returns the ring of each, or an Error if one cannot be undone.
-Result<std::vector<std::vector<uint32_t>>> rings_of(FlatMesh mesh, const std::vector<HalfEdgeCollapse>& collapses) {
+Result<std::vector<std::vector<uint32_t>>> rings_of(FlatMesh mesh, const BaseMesh& base) {
+    const std::vector<HalfEdgeCollapse>& collapses = base.collapses;
     std::vector<std::vector<uint32_t>> rings(collapses.size());
     for (size_t k = collapses.size(); k-- > 0;) {
-        if (!mesh.split(collapses[k], {}))
+        if (!mesh.split(collapses[k], base.kinds[collapses[k].vertex] != VertexKind::kSmooth, {}))
             return Error{Stage::kParametrize,
                          "collapse " + std::to_string(k) + " cannot be undone; this is an error of the program"};
         rings[k] = mesh.last_ring();
@@ -108,13 +109,13 @@ Result<TileMap> map_tiles(const Mesh& dense, const BaseMesh& base, const std::ve
             if (crease) mesh.mark_side(mesh.half_edge_between(quad[i], quad[(i + 1) % 4]));
         }
     }
-    GIM_TRY(rings, rings_of(mesh, base.collapses));
+    GIM_TRY(rings, rings_of(mesh, base));
 
     std::vector<Quad> corners = quads;
     FaceMetrics metrics(dense.positions, options.importance, surface_area(dense), static_cast<double>(quads.size()),
                         options.squeeze);
     metrics.set_least_area(base.triangles, dense.triangles.size());
-    TileMapper mapper(mesh, metrics, std::move(freedom), corners);
+    TileMapper mapper(mesh, base.kinds, metrics, std::move(freedom), corners);
     mapper.sweep_until(kBaseSweeps, options.tolerance);
 
     const size_t total = base.collapses.size();

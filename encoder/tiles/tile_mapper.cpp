@@ -21,8 +21,9 @@ void unify(std::vector<uint32_t>& list) {
 
 }  // namespace
 
-TileMapper::TileMapper(FlatMesh& mesh, FaceMetrics metrics, std::vector<Freedom> freedom, std::vector<Quad>& quads)
-    : mesh_(mesh), metrics_(metrics), freedom_(std::move(freedom)), side_(freedom_.size(), kNone), quads_(quads) {
+TileMapper::TileMapper(FlatMesh& mesh, const std::vector<VertexKind>& kinds, FaceMetrics metrics,
+                       std::vector<Freedom> freedom, std::vector<Quad>& quads)
+    : mesh_(mesh), kinds_(kinds), metrics_(metrics), freedom_(std::move(freedom)), side_(freedom_.size(), kNone), quads_(quads) {
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) metric_.push_back(metrics_.of(mesh_.triangle(f)));
 }
 
@@ -125,7 +126,7 @@ bool TileMapper::insert_after_move(const HalfEdgeCollapse& collapse, const std::
 }
 
 bool TileMapper::insert(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
-    if (!mesh_.split(collapse, ring)) return false;
+    if (!mesh_.split(collapse, kinds_[collapse.vertex] != VertexKind::kSmooth, ring)) return false;
     const uint32_t v = collapse.vertex;
     refresh_metrics(v);
     freedom_[v] = mesh_.last_slides() ? Freedom::kSlides : Freedom::kFree;

@@ -23,8 +23,9 @@ enum class Freedom : uint8_t {
 
 class TileMapper {
   public:
-    // The mesh and the quads must outlive this. freedom: per vertex. The corners of the quads are pinned.
-    TileMapper(FlatMesh& mesh, FaceMetrics metrics, std::vector<Freedom> freedom, std::vector<Quad>& quads);
+    // mesh, kinds and quads must outlive this. freedom: per vertex. The corners of the quads are pinned.
+    TileMapper(FlatMesh& mesh, const std::vector<VertexKind>& kinds, FaceMetrics metrics,
+                       std::vector<Freedom> freedom, std::vector<Quad>& quads);
 
     // Makes one pass over all vertices. Returns the energy gained, as a part of the energy that is left.
     double sweep();
@@ -95,6 +96,7 @@ class TileMapper {
     void restore(const Patch& patch);
 
     FlatMesh& mesh_;
+    const std::vector<VertexKind>& kinds_;
     FaceMetrics metrics_;
     std::vector<FaceMetric> metric_;
     std::vector<Freedom> freedom_;
