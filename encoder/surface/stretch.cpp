@@ -153,6 +153,9 @@ bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x) {
         low = low.cwiseMin(t.p1).cwiseMin(t.p2);
         high = high.cwiseMax(t.p1).cwiseMax(t.p2);
     }
+    const double margin = (high - low).maxCoeff();  // the kernel of an open star may lie beside its triangles
+    low.array() -= margin;
+    high.array() += margin;
     std::vector<Vec2> polygon{low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())}, clipped;
     for (const StarTriangle& t : star) {
         clipped.clear();

@@ -30,9 +30,11 @@ FlatMesh::FlatMesh(const std::vector<Triangle>& triangles, std::vector<FlatFace>
     outgoing_ = std::move(topology.outgoing);
 }
 
-void FlatMesh::mark_side(uint32_t h) {
-    side_[h] = 1;
-    if (twin_[h] != kNone) side_[twin_[h]] = 1;
+void FlatMesh::mark_side(uint32_t h) { mark(h, true); }
+
+void FlatMesh::mark(uint32_t h, bool is_side) {
+    side_[h] = is_side;
+    if (twin_[h] != kNone) side_[twin_[h]] = is_side;
 }
 
 void FlatMesh::pair(uint32_t a, uint32_t b) {
@@ -110,13 +112,21 @@ void FlatMesh::remove_faces(size_t count) {
     side_.resize(3 * faces);
 }
 
-bool FlatMesh::split(const HalfEdgeCollapse& c, const std::vector<uint32_t>& ring) {
+bool FlatMesh::split(const HalfEdgeCollapse& c, bool on_side, const std::vector<uint32_t>& ring) {
     if (present(c.vertex) || !find_fan(c) || (!ring.empty() && ring != undo_.ring)) return false;
     const auto [a, a_twin, b, b_twin] = undo_.edges;
     undo_.outgoing = {outgoing_[c.into], c.left == kNone ? kNone : outgoing_[c.left],
                       c.right == kNone ? kNone : outgoing_[c.right], 0};
-    undo_.slides = c.left == kNone || c.right == kNone;
-    for (size_t i = 1; i < undo_.fan.size(); ++i) undo_.slides |= is_side(undo_.fan[i]);
+    const bool at_boundary = c.left == kNone || c.right == kNone;
+    bool passes = false;  // the side leaves v inside the fan
+    for (size_t i = 1; i < undo_.fan.size(); ++i) passes |= is_side(undo_.fan[i]);
+    // An ear: the side goes on from v to the third corner of a new face. On a boundary nothing lies beyond that edge.
+    const auto is_ear = [&](uint32_t spoke, uint32_t twin) {
+        return at_boundary ? spoke == kNone : on_side && !passes && is_side(spoke != kNone ? spoke : twin);
+    };
+    const bool left_ear = c.left != kNone && is_ear(a, a_twin);
+    const bool right_ear = c.right != kNone && !left_ear && is_ear(b, b_twin);
+    undo_.slides = at_boundary || passes || left_ear || right_ear;
 
     uint32_t left_face = kNone, right_face = kNone;
     if (c.left != kNone) {
@@ -131,8 +141,8 @@ bool FlatMesh::split(const HalfEdgeCollapse& c, const std::vector<uint32_t>& rin
         }
     }
     for (const uint32_t h : undo_.fan) origin_[h] = c.vertex;
-    if (left_face != kNone) undo_.sides[0] = insert_face(3 * left_face, a_twin, a);
-    if (right_face != kNone) undo_.sides[1] = insert_face(3 * right_face, b_twin, b);
+    if (left_face != kNone) undo_.sides[0] = insert_face(3 * left_face, a_twin, a, left_ear);
+    if (right_face != kNone) undo_.sides[1] = insert_face(3 * right_face, b_twin, b, right_ear);
     if (left_face != kNone && right_face != kNone) pair(3 * left_face, 3 * right_face);
     if (undo_.slides) {
         if (left_face != kNone) side_[3 * left_face] = 1;
@@ -144,14 +154,14 @@ bool FlatMesh::split(const HalfEdgeCollapse& c, const std::vector<uint32_t>& rin
 
 // Joins face 3f to what is beside it: `at_into` beyond its edge between `into` and the third corner, `at_vertex` beyond
 // the one between `vertex` and the third corner. Returns whether these two were one edge on a side.
-uint8_t FlatMesh::insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex) {
+uint8_t FlatMesh::insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex, bool is_ear) {
     const bool left = origin_[h] == undo_.collapse.vertex;
     const uint32_t outer = left ? h + 1 : h + 2, inner = left ? h + 2 : h + 1;
     const uint8_t was_side = side_[at_into != kNone ? at_into : at_vertex];
     pair(outer, at_into);
     pair(inner, at_vertex);
-    side_[outer] = was_side;
-    if (at_vertex != kNone) side_[at_vertex] = 0;
+    mark(outer, was_side != 0 && !is_ear);
+    mark(inner, is_ear);
     return was_side;
 }
 
@@ -176,12 +186,12 @@ void FlatMesh::unsplit() {
     for (const uint32_t h : undo_.fan) origin_[h] = c.into;
     if (c.left != kNone) {
         pair(a, a_twin);
-        if (a != kNone) side_[a] = undo_.sides[0];
+        mark(a != kNone ? a : a_twin, undo_.sides[0] != 0);
         outgoing_[c.left] = undo_.outgoing[1];
     }
     if (c.right != kNone) {
         pair(b, b_twin);
-        if (b != kNone) side_[b] = undo_.sides[1];
+        mark(b != kNone ? b : b_twin, undo_.sides[1] != 0);
         outgoing_[c.right] = undo_.outgoing[2];
     }
     outgoing_[c.into] = undo_.outgoing[0];
@@ -213,6 +223,23 @@ bool FlatMesh::move(const std::vector<Spoke>& star, const Vec2& x) {
     for (const Spoke& spoke : star) {
         if (!certainly_left(spoke.p1 - step, spoke.p2 - step)) return false;
     }
+    return move_exactly(star, step);
+}
+
+bool FlatMesh::move_onto(const std::vector<Spoke>& star, uint32_t w) {
+    Vec2 step = Vec2::Zero();
+    for (const Spoke& spoke : star) {
+        if (target(spoke.half_edge) == w) step = spoke.p1;
+        if (origin_[prev(spoke.half_edge)] == w) step = spoke.p2;
+    }
+    for (const Spoke& spoke : star) {
+        const bool between = target(spoke.half_edge) == w || origin_[prev(spoke.half_edge)] == w;
+        if (!between && !certainly_left(spoke.p1 - step, spoke.p2 - step)) return false;
+    }
+    return move_exactly(star, step);
+}
+
+bool FlatMesh::move_exactly(const std::vector<Spoke>& star, const Vec2& step) {
     moved_.clear();
     for (const Spoke& spoke : star) {
         FlatFace face = faces_[face_of(spoke.half_edge)];

@@ -40,6 +40,7 @@ class FlatMesh {
     uint32_t target(uint32_t h) const { return origin_[next(h)]; }
     uint32_t twin(uint32_t h) const { return twin_[h]; }
     Triangle triangle(uint32_t f) const { return {origin_[3 * f], origin_[3 * f + 1], origin_[3 * f + 2]}; }
+    const TileWalker& walker() const { return walker_; }
     const FlatFace& face(uint32_t f) const { return faces_[f]; }
     bool present(uint32_t v) const { return outgoing_[v] != kNone; }
     bool on_boundary(uint32_t v) const { return twin_[outgoing_[v]] == kNone; }
@@ -63,9 +64,10 @@ class FlatMesh {
     }
 
     // Gives the fan of faces around `into` between left and right back to `vertex`, and the two faces between them.
-    // `vertex` gets the place of `into`. ring: what undone_ring() returned when the collapse was undone in its turn;
-    // empty: anything. Returns false, and changes nothing, if the fan is another one.
-    bool split(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring);
+    // `vertex` gets the place of `into`. on_side: whether `vertex` lies on a crease or boundary. ring: what last_ring()
+    // returned when the collapse was undone in its turn; empty: anything. Returns false, and changes nothing, if the fan
+    // is another one.
+    bool split(const HalfEdgeCollapse& collapse, bool on_side, const std::vector<uint32_t>& ring);
     // The neighbours of the last split's vertex.
     const std::vector<uint32_t>& last_ring() const { return undo_.ring; }
     // Returns whether the last split's vertex lies on a side.
@@ -80,6 +82,11 @@ class FlatMesh {
     // Moves v by x, in the frame of its star, which must be unfolded. Returns false, and changes nothing, if a face
     // would not certainly stay counter-clockwise. x is rounded to the grid.
     bool move(const std::vector<Spoke>& star, const Vec2& x);
+    // Moves v to the place of its neighbour w exactly. Returns false, and changes nothing, if a face besides the two at
+    // their edge would not certainly stay counter-clockwise.
+    bool move_onto(const std::vector<Spoke>& star, uint32_t w);
+    // Gives a face a place that it had before.
+    void set_face(uint32_t f, const FlatFace& face) { faces_[f] = face; }
     // Returns the axis along which a vertex on a side may move (0: x, 1: y), in the frame of its star.
     int side_axis(uint32_t v) const;
 
@@ -93,10 +100,12 @@ class FlatMesh {
         bool slides = false;
     };
     void pair(uint32_t a, uint32_t b);
+    void mark(uint32_t h, bool is_side);
+    bool move_exactly(const std::vector<Spoke>& star, const Vec2& step);
     bool find_fan(const HalfEdgeCollapse& collapse);
     uint32_t add_face(const Triangle& corners, uint32_t third, uint32_t shared);
     void remove_faces(size_t count);
-    uint8_t insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex);
+    uint8_t insert_face(uint32_t h, uint32_t at_into, uint32_t at_vertex, bool is_ear);
     void restore_outgoing(uint32_t left_face, uint32_t right_face);
 
     const TileWalker& walker_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "encoder/surface/closest_point.h"
 #include "encoder/surface/stretch.h"
 #include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/tile_walk.h"
@@ -42,6 +43,33 @@ class Locator {
         }
     }
 
+    // Gives samples that no triangle covers to the nearest one within `reach` intervals.
+    void approach(uint32_t f, const TileTriangle& triangle, double reach) {
+        const double n = side_;
+        const Vec2 a = triangle.corners[0] * n, b = triangle.corners[1] * n, c = triangle.corners[2] * n;
+        const Vec2 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+        const auto in_space = [](const Vec2& p) { return Vec3(p.x(), p.y(), 0); };
+        for (double row = std::ceil(low.y() - reach); row <= high.y() + reach; ++row) {
+            for (double column = std::ceil(low.x() - reach); column <= high.x() + reach; ++column) {
+                const Vec2 p(column, row);
+                const ClosestPoint closest = closest_point_on_triangle(in_space(p), in_space(a), in_space(b), in_space(c));
+                const uint32_t sample = sample_at(triangle, (a + b + c) / (3 * n), p / n);
+                const double distance = (closest.point - in_space(p)).norm();
+                if (sample == kNone || distance > reach || distance >= far_[sample]) continue;
+                far_[sample] = distance;
+                found_[sample] = {f, closest.barycentric};
+            }
+        }
+    }
+    // Calls for approach(): samples that have a triangle keep it.
+    bool is_complete() {
+        far_.assign(found_.size(), HUGE_VAL);
+        for (size_t i = 0; i < found_.size(); ++i) {
+            if (found_[i].triangle != kNone) far_[i] = 0;
+        }
+        return std::find(far_.begin(), far_.end(), HUGE_VAL) == far_.end();
+    }
+
     std::vector<SurfacePoint>& found() { return found_; }
 
   private:
@@ -49,6 +77,9 @@ class Locator {
         const auto frame = walker_.walk(triangle.tile, inside, p);
         if (!frame) return kNone;
         const Vec2 at = (*frame)(p)*side_;
+        if (frame->tile >= walker_.complex_tiles())  // of the fringe: only its side 0 lies on the complex
+            return at.y() == 0 ? samples_.along(walker_.mate(4 * frame->tile), side_ - static_cast<uint32_t>(at.x()))
+                               : kNone;
         return samples_.at(frame->tile, static_cast<uint32_t>(at.y()), static_cast<uint32_t>(at.x()));
     }
 
@@ -57,6 +88,7 @@ class Locator {
     uint32_t side_;
     std::vector<SurfacePoint> found_;
     std::vector<double> best_;  // least barycentric coordinate so far
+    std::vector<double> far_;   // how far from its triangle
 };
 
 }  // namespace
@@ -79,9 +111,14 @@ Result<std::vector<SurfacePoint>> locate_samples(const TileMap& map, uint32_t si
     GIM_TRY(complex, complex_of(quads, static_cast<uint32_t>(vertices.size())));
     const QuadComplex& view = complex.view();
     const TileSamples samples(view, side);
-    const TileWalker walker({view.mate, view.mate + view.half_edges()});
+    const TileWalker walker = TileWalker::with_fringe(view);
     Locator locator(walker, samples, side);
     for (uint32_t f = 0; f < map.placed.size(); ++f) locator.convert(f, map.placed[f]);
+
+    // Beside a vertex of a boundary that lies inside its tile.
+    for (double reach = 1; !locator.is_complete() && reach <= side; reach *= 2) {
+        for (uint32_t f = 0; f < map.placed.size(); ++f) locator.approach(f, map.placed[f], reach);
+    }
 
     std::vector<SurfacePoint>& found = locator.found();
     std::vector<uint32_t> corner_of(map.places.size(), kNone);

@@ -33,6 +33,14 @@ std::vector<uint32_t> texels(const QuadComplex& complex, uint32_t side) {
     return sample;
 }
 
+// How the decoder splits a cell of a tile: through the corner of the tile if it has one.
+CellKind split_of(uint32_t row, uint32_t column, uint32_t side) {
+    const bool top = row == 0, bottom = row + 1 == side, left = column == 0, right = column + 1 == side;
+    if ((top && left) || (bottom && right)) return CellKind::kMain;
+    if ((top && right) || (bottom && left)) return CellKind::kAnti;
+    return CellKind::kShorter;
+}
+
 GridGluing glue(const QuadComplex& complex, const std::vector<uint32_t>& sample_at, uint32_t side) {
     const TileSamples samples(complex, side);
     const TileAtlas atlas(complex.tiles, side);
@@ -53,7 +61,7 @@ GridGluing glue(const QuadComplex& complex, const std::vector<uint32_t>& sample_
     for (uint32_t tile = 0; tile < complex.tiles; ++tile) {
         for (uint32_t row = 0; row < side; ++row) {
             const size_t first = size_t{atlas.row(tile) + row} * (glued.width - 1) + atlas.column(tile);
-            std::fill_n(glued.kind.begin() + static_cast<std::ptrdiff_t>(first), side, CellKind::kShorter);
+            for (uint32_t column = 0; column < side; ++column) glued.kind[first + column] = split_of(row, column, side);
         }
     }
     return make_gluing(std::move(glued));

@@ -27,7 +27,33 @@ uint32_t exit_side(const Vec2& from, const Vec2& to) {
     return static_cast<uint32_t>(std::find(beyond.begin(), beyond.end(), true) - beyond.begin());
 }
 
+// Returns the half-edge on the boundary that begins where h, on the boundary too, ends.
+uint32_t next_on_boundary(const QuadComplex& complex, uint32_t h) {
+    uint32_t after = next_side(h);
+    while (complex.mate[after] != kNoMate) after = next_side(complex.mate[after]);
+    return after;
+}
+
 }  // namespace
+
+TileWalker TileWalker::with_fringe(const QuadComplex& complex) {
+    std::vector<uint32_t> mates(complex.mate, complex.mate + complex.half_edges());
+    std::vector<uint32_t> fringe(mates.size(), kNoMate);  // per half-edge: side 0 of the tile beyond it
+    for (uint32_t h = 0; h < fringe.size(); ++h) {
+        if (complex.mate[h] != kNoMate) continue;
+        fringe[h] = mates[h] = static_cast<uint32_t>(mates.size());
+        mates.insert(mates.end(), {h, kNoMate, kNoMate, kNoMate});
+    }
+    for (uint32_t h = 0; h < fringe.size(); ++h) {
+        if (fringe[h] == kNoMate) continue;
+        const uint32_t here = fringe[h] + 3, there = fringe[next_on_boundary(complex, h)] + 1;
+        mates[here] = there;
+        mates[there] = here;
+    }
+    TileWalker walker(std::move(mates));
+    walker.inner_ = complex.tiles;
+    return walker;
+}
 
 std::optional<TileFrame> TileWalker::walk(uint32_t tile, const Vec2& from, const Vec2& to) const {
     TileFrame frame{tile, 0, Vec2::Zero()};

@@ -48,9 +48,13 @@ struct TileFrame {
 class TileWalker {
   public:
     // mates: per half-edge of the tiles (format/quad_complex.h).
-    explicit TileWalker(std::vector<uint32_t> mates) : mates_(std::move(mates)) {}
+    explicit TileWalker(std::vector<uint32_t> mates) : mates_(std::move(mates)), inner_(mates_.size() / 4) {}
+    // Walks over a complex and a fringe: beyond each side on a boundary lies one more tile. Tiles of the fringe are
+    // numbered after those of the complex. Neighbours along a boundary are glued to each other.
+    static TileWalker with_fringe(const QuadComplex& complex);
 
-    size_t tile_count() const { return mates_.size() / 4; }
+    size_t complex_tiles() const { return inner_; }  // those that are not of the fringe
+    uint32_t mate(uint32_t half_edge) const { return mates_[half_edge]; }
     // Where the corners of a tile lie in its frame, counter-clockwise.
     static Vec2 corner(uint32_t i) { return {i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0}; }
 
@@ -60,6 +64,7 @@ class TileWalker {
 
   private:
     std::vector<uint32_t> mates_;
+    size_t inner_;
 };
 
 // Returns whether the closed unit square contains p.

@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "encoder/code/decode_surface.h"
+#include "encoder/code/file_units.h"
 #include "encoder/surface/topology_summary.h"
+#include "encoder/tiles/write_tiles.h"
+#include "tests/encoder/tiles/made_tiles.h"
 #include "tests/encoder/tiles/mapped_meshes.h"
 
 namespace gim {
@@ -68,6 +74,44 @@ TEST(SampleTiles, SamplesOfACreaseLieOnIt) {
         EXPECT_GE(faces, 1) << tiles.positions[i].transpose();
     }
     EXPECT_GT(on_edges, 12u * 7u);
+}
+
+using Corner = std::array<float, 3>;
+
+// The triangles as places, each from its least corner on, in ascending order.
+std::vector<std::array<Corner, 3>> triangle_places(const Mesh& mesh) {
+    std::vector<std::array<Corner, 3>> places;
+    for (const Triangle& t : mesh.triangles) {
+        std::array<Corner, 3> corners;
+        for (size_t i = 0; i < 3; ++i) {
+            for (Eigen::Index k = 0; k < 3; ++k) corners[i][size_t(k)] = static_cast<float>(mesh.positions[t[i]][k]);
+        }
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        places.push_back(corners);
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+TEST(SampleTiles, SurfaceOfTheAtlasIsTheOneThatIsDecoded) {
+    CodingParameters lossless;
+    lossless.bits = 12;
+    lossless.base_side = 3;
+    for (const test::MadeQuads& made : test::all_made_quads()) {
+        for (const uint32_t exponent : {1u, 3u}) {
+            SCOPED_TRACE(made.name + " " + std::to_string(exponent));
+            TileImage image = test::tile_image(made, exponent, 0.3);
+            const auto decoded = decode_surface(write_tiles(image, lossless).value(), 0);
+            ASSERT_TRUE(decoded.ok());
+            const Units units = tile_units(image, 12).value();
+            const auto integers = to_units<int32_t>(image.positions, units);
+            for (size_t i = 0; i < integers.size(); ++i)
+                image.positions[i / 3][static_cast<Eigen::Index>(i % 3)] =
+                    units.origin[i % 3] + units.step * static_cast<float>(integers[i]);
+            const Surface atlas = surface_of(atlas_of(image).value());
+            EXPECT_EQ(triangle_places(atlas.mesh), triangle_places(decoded.value()));
+        }
+    }
 }
 
 }  // namespace
