@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "format/band_code.h"
@@ -16,10 +17,9 @@ namespace gim {
 // Tiles with fewer intervals in the small image have no flags of empty blocks.
 inline constexpr uint32_t kLeastFlaggedTile = 4;
 
-// Whether the image of a complex at `side` intervals has the weights of fine bands. It has as many samples as a square
-// that has them.
-constexpr bool has_fine_weights(uint32_t tiles, uint32_t side) {
-    return uint64_t{tiles} * side * side >= kFineSide * kFineSide;
+// Which of kTileWeights the step that begins with h intervals has.
+constexpr uint32_t weights_step(uint32_t h) {
+    return std::min(static_cast<uint32_t>(std::bit_width(h)), kTileSteps) - 1;
 }
 
 // Which bands of a tile had a block that is not empty: edges, faces.
@@ -113,9 +113,8 @@ template <class Coder>
 bool TileCoder<Coder>::code_step(const QuadComplex& complex, const TilePlanes& planes, int32_t* details,
                                  int32_t* parents, TileFlags* flags) {
     const TilePlanes parent_planes(planes.h / 2);
-    const auto& weights =
-        kBandWeights[static_cast<size_t>(models_.kind)][has_fine_weights(complex.tiles, 2 * planes.h)];
-    const bool turned = models_.kind == CoefficientKind::kInFrames;
+    const bool turned = is_in_frames(models_.kind);
+    const auto& weights = kTileWeights[turned][weights_step(planes.h)];
     for (uint32_t t = 0; t < complex.tiles; ++t) {
         const LevelBands bands = planes.bands(details + t * planes.details());
         LevelBands of_parents;

@@ -13,7 +13,13 @@ enum class CoefficientKind : uint8_t {
     kPlain,     // x, y, z: lossless positions
     kInFrames,  // a normal component and two tangential ones: lossy positions
     kPlanes,    // attribute planes
+    kTiles,     // as kPlain and kInFrames, of tiles
+    kTilesInFrames,
 };
+inline constexpr size_t kCoefficientKinds = 5;
+constexpr bool is_in_frames(CoefficientKind kind) {
+    return kind == CoefficientKind::kInFrames || kind == CoefficientKind::kTilesInFrames;
+}
 
 // What each magnitude nearby adds to the expected one, in 1/256 of it.
 struct BandWeights {
@@ -34,7 +40,7 @@ inline constexpr BandWeights kBaseWeights[2] = {
     {80, 48, 0, 0, 0, 0, 0, 0, 96, 48, 131072},
 };
 
-// By kind; coarse or fine; horizontal, vertical or diagonal; first or later component.
+// Of squares, by kind; coarse or fine; horizontal, vertical or diagonal; first or later component.
 inline constexpr BandWeights kBandWeights[3][2][3][2] = {
     {
         {
@@ -74,8 +80,57 @@ inline constexpr BandWeights kBandWeights[3][2][3][2] = {
     },
 };
 
+// Of tiles: plain or in frames; by wavelet step, the last one stands for all finer ones; then as above.
+inline constexpr uint32_t kTileSteps = 4;
+inline constexpr BandWeights kTileWeights[2][kTileSteps][3][2] = {
+    {
+        {
+            {{0, 22, 0, 0, 0, 0, 0, 32, 0, 0, 5655}, {0, 27, 0, 0, 0, 0, 0, 20, 51, 13, 4858}},
+            {{26, 0, 0, 0, 0, 49, 0, 2, 0, 0, 4181}, {5, 0, 0, 0, 0, 31, 0, 13, 42, 14, 4372}},
+            {{0, 0, 0, 0, 0, 44, 29, 0, 0, 0, 2419}, {0, 0, 0, 0, 0, 23, 29, 0, 49, 15, 3006}},
+        },
+        {
+            {{10, 30, 23, 24, 15, 0, 0, 9, 0, 0, 717}, {9, 23, 9, 22, 9, 0, 0, 8, 43, 23, 850}},
+            {{15, 7, 0, 29, 9, 18, 0, 4, 0, 0, 815}, {4, 4, 1, 25, 6, 18, 0, 4, 46, 20, 684}},
+            {{7, 6, 14, 13, 0, 34, 37, 2, 0, 0, 284}, {11, 0, 15, 8, 0, 31, 32, 1, 33, 28, 191}},
+        },
+        {
+            {{1, 50, 1, 27, 8, 0, 0, 7, 0, 0, 171}, {1, 45, 0, 21, 6, 0, 0, 7, 60, 35, 104}},
+            {{36, 1, 0, 30, 7, 15, 0, 1, 0, 0, 157}, {27, 1, 0, 24, 4, 11, 0, 1, 61, 43, 75}},
+            {{0, 1, 0, 12, 1, 30, 28, 0, 0, 0, 61}, {3, 1, 3, 9, 1, 21, 25, 0, 56, 46, 10}},
+        },
+        {
+            {{1, 48, 5, 32, 5, 0, 0, 7, 0, 0, 57}, {1, 40, 8, 26, 3, 0, 0, 1, 48, 29, 61}},
+            {{32, 8, 1, 34, 5, 13, 0, 3, 0, 0, 36}, {36, 7, 1, 29, 2, 9, 0, 1, 43, 26, 35}},
+            {{1, 1, 4, 16, 1, 23, 29, 1, 0, 0, 38}, {1, 1, 5, 13, 1, 22, 24, 0, 35, 18, 32}},
+        },
+    },
+    {
+        {
+            {{0, 82, 0, 0, 0, 0, 0, 148, 0, 0, 1107}, {0, 84, 0, 0, 0, 0, 0, 47, 22, 21, 188}},
+            {{15, 0, 0, 0, 0, 79, 0, 53, 0, 0, 1006}, {21, 0, 0, 0, 0, 57, 0, 15, 20, 79, 160}},
+            {{0, 0, 0, 0, 0, 37, 46, 0, 0, 0, 194}, {0, 0, 0, 0, 0, 46, 46, 0, 11, 19, 112}},
+        },
+        {
+            {{40, 60, 36, 10, 9, 0, 0, 44, 0, 0, 30}, {33, 43, 24, 8, 2, 0, 0, 27, 9, 28, 0}},
+            {{50, 39, 0, 15, 8, 24, 0, 14, 0, 0, 24}, {15, 29, 0, 7, 2, 30, 0, 8, 9, 62, 0}},
+            {{32, 21, 16, 6, 0, 21, 19, 1, 0, 0, 3}, {4, 2, 1, 2, 0, 32, 30, 1, 8, 34, 0}},
+        },
+        {
+            {{51, 75, 19, 10, 3, 0, 0, 15, 0, 0, 7}, {8, 38, 0, 6, 0, 0, 0, 1, 1, 58, 0}},
+            {{65, 49, 8, 12, 3, 7, 0, 10, 0, 0, 3}, {25, 3, 0, 5, 0, 17, 0, 2, 1, 69, 0}},
+            {{26, 21, 22, 5, 0, 10, 11, 0, 0, 0, 2}, {0, 0, 0, 1, 0, 17, 22, 0, 0, 56, 0}},
+        },
+        {
+            {{43, 66, 17, 7, 1, 0, 0, 0, 0, 0, 1}, {23, 15, 0, 7, 0, 0, 0, 1, 0, 115, 0}},
+            {{60, 51, 9, 6, 1, 4, 0, 0, 0, 0, 1}, {21, 0, 0, 7, 0, 0, 0, 1, 0, 0, 0}},
+            {{10, 20, 11, 5, 0, 3, 12, 0, 0, 0, 1}, {0, 0, 0, 8, 0, 19, 10, 0, 0, 0, 0}},
+        },
+    },
+};
+
 // Two characters per model: age_code * 32 + probability_code, as hexadecimal digits, in the order of BandModels.
-inline constexpr const char* kTrainedModels[3] = {
+inline constexpr const char* kTrainedModels[kCoefficientKinds] = {
     "1010101b1010101a1010101f1010101010101010101010101010101010101010101010101010101010101010101010101010101010"
     "108b890b1010101010101010101010acc70910101010101010101010108de8051010101010101010101010aee9ca4d100e10101010"
     "10101010cfeae98c0f5110120e1010101010d0ebebac8f3010100e1010101010d0edecedce8f4f9011521515150bf1eeedeecfb0b0"
@@ -130,6 +185,42 @@ inline constexpr const char* kTrainedModels[3] = {
     "91f2d28deeed6feff052d2f18ccdee90d0d19292d36cedeef0eff14feff091f0d192f2f391d2d192f2d3accdeeaeeeefaeceeed0f0"
     "f091b2f1aecfcfb291d171b2d14eb0afb0cff0afd0d18fce8ff0eff0b2f2928dedef8fafd0929172ceedcd91d1d152b2538eee6ff0"
     "eff1cfeff0d0f0f154f3f3b2f2f294b2d3adedeead8eee8eceeed0f0f071d1b1ceefaf72d1b1b1d1f211d0ae8faeaeb1d1d0adcfaf",
+    "10101010101010101010101f1010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "1010101010101010101010101010101010101010101010101010101010ed870d1010101010101010101010edc98b0e101010101010"
+    "10101010efcaaa4d120e1010101010101010efcbebae8d0f0e10101010101010f1edecce8fb0913117114e0e1010d1ceceeef0cf90"
+    "b18f90500c1010f2efeff0f0f0d0b0b09033309391d2f1f0d0f1f1d1f1d2d1d271b3b1f4d2b1f1d2d1d1d1f1f2f2d2d2d2f5f3f3f3"
+    "f2d2f3f2f2f2d2f2d2b3f2f2d1f1f1f1f1d1f1f1d2d17193d3f3f3f3f2f2f2d2f2f2d2f2d3b3101010101010101010101010101010"
+    "1010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "1010ec870c1010101010101010101010cee96a0e10101010101010101010cfeacb8d0b101010101010101010f0cccb8e90500c1010"
+    "1010101010f1edeccd8e902e9215901350120ed2eeedceee8f52908f9116115114d2efd0efefd0d0d0b1b231919291f3f1f0f0f0d0"
+    "f1d0b2d1b1b19171f4f2f1d1f1f1f1f1f2f2f2f2d2d2f4f3d3f3f2f2d2d2f2f2f3f2f2d3d2f2f2d1d1f1f1f1f1d2d1b28f91d3f3f3"
+    "f3f2d2d2d2f2f2d1f2d2b2101010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "101010101010101010101010101010101010101010101010101010101010101010101010101010101010ce06101010101010101010"
+    "101010eec8091010101010101010101010cfea8a4e0e101010101010101010f0eccbac8b0e1010101010101010f1cdeccdad904e0c"
+    "101010101010d2cfeeeeefcf6f4f7151162f9012f3f0d0f0f0d0d0b0b1b270919333d3f2f1f0f1f1f1d1b1b1d2d1d2b2f5f3f2f2f2"
+    "f2f2f2f2d2f2d1d2d2d2d2f1d1d1f1f1f0b1d1d1b19132f4f3d2d2d2d1f1f2f1d1d2d1d2b310101010101010101010101010101010"
+    "101010101010101010101010101010101010f2d0eecd690e1010101010101010101010101010101010101010101010101010edecf1"
+    "adecf0afcdd1efedf1aeedf1eeedf0d0eef1cfeff2afeef2eeedf1eeeef0efeef2cdedf1cdedf1afcff2ceedf1adedf08feef1f0ce"
+    "b1eeeff0efeef0eeeff0eeeff0efefd0cecff0cecff0cfcecfedcdf1ededf0aeedf1efeef18eeef1eeedf0cfeef2d0aff2afeed1ef"
+    "edd1efeef1efeef1ceeef2aeeef1cfeff2ceedd1eeedf0efeef1f0cef1eeeff1cfeef0eef0f1eef0f1efeff0cfeef0efeff0efeeef",
+    "02664647e98accadcdcf6f12e6698c0e10101010101010101010e9a84c4f120e1010101010101010eae88b0c101010101010101010"
+    "10eae96a4e0e101010101010101010ebe9ab4e100e1010101010101010ebe9ac4b0e101010101010101010ecebcc8e0d0e10101010"
+    "10101010edebecce8d501012120e10101010eeeded8e8d105010121212120e10efeeedee6eaf8e90111012120e10d0efeeefcf5050"
+    "7110104e0e1010f2f0efeff0f0d0d1119013739510f3f1f0f0f0f0b1d1b2b175735294f4f2f2f2f1f2f1f2d1d1b192b2b2f4f3f3f2"
+    "f2f2f2b2f2d292d392d3f2f2f1f1f1f1f1f1f1b2d29252b4f3f3f2f2f2f2f2f2f2f2b2d292d2aea70a1010101010101010101010f0"
+    "e76a0e10101010101010101010d1878b0e10101010101010101010f1e90a4f0e101010101010101010d2ca880c1010101010101010"
+    "1010b1a9ca0c0e101010101010101010d24aac8d110c1010101010101010f28bcc2c6e500e10101010101010f2accc4e300f500e10"
+    "1010101010f2ae6ece904f304f10121212120ef3cfceee8f70306e14101212120ef3f0f0d0cf4fd1b0129490501013f4f1d1b0d0d0"
+    "b091161290925113f5f2f1d1f1919151527291149193f5f3b2f3f2b25292d232b2949394f3b1d1f270d1d1b1d29273b15191f4f3f3"
+    "f3f2f2b2b394b2b212b292c90a1010101010101010101010104b6b0e10101010101010101010102d0a101010101010101010101010"
+    "8f8f0d10101010101010101010102b0b1010101010101010101010104b061010101010101010101010108b05101010101010101010"
+    "101010edc9ac0a10101010101010101010ef6b8b0f0c101010101010101010f0ed6d8e30900f0e101010101010f1efaead4f8f110c"
+    "101010101010f2f0efaecf70912f51111551100ed3f1d0f0b0b14f70908f10131350f3d2f1f1b1b1d1b1d19293931114d4f3f3f2d2"
+    "d29292523111139391f2f2f1f1f1f1d15152b391119531f3f3f2d2f3d2f2d1d152b2b19392e2e4e6a7c788c9c9a9aaea6bebacedad"
+    "eecfefd0d0f1b1b2f4f4b4d5b5f6b67715d9d3f1ce2d0b0e1010101010101010101010101010101010101010101010101010f0eef2"
+    "b5f2f48aebcdeeedd0b2aff28aeaedf1f0f395d2f58eceb0f0eef2efedd0f1f0f3b3f1f592cfd2b6f3f4ccebeeacebed6eeeeff0ee"
+    "f2b1f1d38dadefb1f1f371d194af8eb18dacd02e8eb00d6dcdf0edf394d0b50baaefefedf116d0b30ecbaef1509493d19510add0f0"
+    "edf3f0ce50f1b07452f0f430d0b694b1d56dccd02eaccf10add1f0edf491cfd42cccf092cfd392d1760f4e928eccb0112e930aaace",
 };
 
 // Probability of a zero in 1/65536: 1 / (1 + e^(0.4 (code - 16))), rounded down, at least 200 and at most 65336.
