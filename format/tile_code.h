@@ -232,7 +232,8 @@ bool TileCoder<Coder>::code_band(const Band& band, const BandSurroundings& aroun
     const uint32_t last = is_vertical && known.side[1] ? band.columns - 1 : band.columns;
     std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // includes the margin at either end
     if (!is_horizontal && known.beyond_above.side) {
-        for (uint32_t c = 0; c < band.columns; ++c) known.beyond_above.load(is_face, c, work_.magnitudes + size_t{c} * 3);
+        for (uint32_t c = 0; c < band.columns; ++c)
+            known.beyond_above.load(is_face, c, work_.magnitudes + size_t{c} * 3);
     }
     std::fill_n(work_.full_above, blocks, h < kLeastFlaggedTile ? 1u : known.above[is_face]);
     for (uint32_t row = 0; row < band.rows; ++row) {

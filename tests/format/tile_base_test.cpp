@@ -40,7 +40,8 @@ Base base_of(const test::MadeQuads& made, double scale) {
         const uint32_t from = coded.half_edges[h];
         const Vec3& p = made.corners[made.quads[tile_of(from)][side_of(from)]];
         for (int k = 0; k < 3; ++k)
-            base.values[3 * size_t{base.view().vertex[h]} + size_t(k)] = static_cast<int32_t>(std::lround(scale * p[k]));
+            base.values[3 * size_t{base.view().vertex[h]} + size_t(k)] =
+                static_cast<int32_t>(std::lround(scale * p[k]));
     }
     return base;
 }

@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kKinds[3] = {"plain ", "frames ", "planes "};
 constexpr const char* kOrientations[3] = {"horiz ", "vert ", "diag "};
-constexpr const char* kHeadings[kCoefficientKinds] = {"\nPlain:\n\n", "\nIn frames:\n\n", "\nPlanes:\n\n", "\nTiles:\n\n",
-                                                      "\nTiles in frames:\n\n"};
+constexpr const char* kHeadings[kCoefficientKinds] = {"\nPlain:\n\n", "\nIn frames:\n\n", "\nPlanes:\n\n",
+                                                      "\nTiles:\n\n", "\nTiles in frames:\n\n"};
 
 std::string specification() {
     std::ifstream stream(GIM_SOURCE_DIR "/spec/gim-format.md");
@@ -33,7 +33,7 @@ std::string weights_line(const std::string& name, const BandWeights& w) {
 // If the tables change, the expected text goes into the specification as it is.
 TEST(TrainedModels, WeightsAreThoseOfTheSpecification) {
     std::string expected = weights_line("base first", kBaseWeights[0]) + weights_line("base later", kBaseWeights[1]);
-    const auto add = [&](const std::string& name, const BandWeights (&weights)[3][2]) {
+    const auto add = [&](const std::string& name, const BandWeights(&weights)[3][2]) {
         for (const size_t orientation : {0u, 1u, 2u}) {
             for (const size_t later : {0u, 1u})
                 expected += weights_line(name + kOrientations[orientation] + (later ? "later" : "first"),
@@ -41,7 +41,8 @@ TEST(TrainedModels, WeightsAreThoseOfTheSpecification) {
         }
     };
     for (const size_t kind : {0u, 1u, 2u}) {
-        for (const size_t fine : {0u, 1u}) add(std::string(kKinds[kind]) + (fine ? "fine " : "coarse "), kBandWeights[kind][fine]);
+        for (const size_t fine : {0u, 1u})
+            add(std::string(kKinds[kind]) + (fine ? "fine " : "coarse "), kBandWeights[kind][fine]);
     }
     for (const size_t framed : {0u, 1u}) {
         for (size_t step = 0; step < kTileSteps; ++step)

@@ -48,8 +48,7 @@ struct Level {
 
     LevelBands bands() {
         const uint32_t low = low_count(side), high = high_count(side);
-        return {
-            {values[0].data(), low, high}, {values[1].data(), high, low}, {values[2].data(), high, high}};
+        return {{values[0].data(), low, high}, {values[1].data(), high, low}, {values[2].data(), high, high}};
     }
 };
 

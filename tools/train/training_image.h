@@ -23,7 +23,7 @@ struct Recording {
 // The three bands of one wavelet step: of a square, or of one tile.
 struct TrainingBands {
     LevelBands bands, parents;
-    uint32_t weights = 0;  // which of the kind's weights they have
+    uint32_t weights = 0;   // which of the kind's weights they have
     bool has_flags = true;  // of empty blocks
     // Whether a triple is coded here, not a copy of another one.
     std::function<bool(Orientation, uint32_t row, uint32_t column)> is_coded;
