@@ -211,7 +211,7 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
     std::conditional_t<Coder::kWrites, Coder&, Coder> coder = coder_;
     BandModels& models = models_;
     const BandWeights &first = around.weights[0], &later = around.weights[1];
-    const bool paired = models.kind == CoefficientKind::kInFrames;
+    const bool paired = is_in_frames(models.kind);
     const bool across = around.orientation == Orientation::kVertical;
     const bool has_copies = around.rim && (across || row == 0 || row + 1 == band.rows);
     int32_t* values = band.row(row);

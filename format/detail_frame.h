@@ -51,6 +51,9 @@ inline DetailCoding detail_coding_of(const Units& units) {
 inline CoefficientKind coefficient_kind_of(const Units& units) {
     return units.tangential > 0 ? CoefficientKind::kInFrames : CoefficientKind::kPlain;
 }
+inline CoefficientKind tile_kind_of(const Units& units) {
+    return units.tangential > 0 ? CoefficientKind::kTilesInFrames : CoefficientKind::kTiles;
+}
 
 struct DetailFrame {
     float axis[3][3];  // unit normal, unit tangent along the row, unit tangent across; right-handed

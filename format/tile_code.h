@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "format/band_code.h"
@@ -16,10 +17,9 @@ namespace gim {
 // Tiles with fewer intervals in the small image have no flags of empty blocks.
 inline constexpr uint32_t kLeastFlaggedTile = 4;
 
-// Whether the image of a complex at `side` intervals has the weights of fine bands. It has as many samples as a square
-// that has them.
-constexpr bool has_fine_weights(uint32_t tiles, uint32_t side) {
-    return uint64_t{tiles} * side * side >= kFineSide * kFineSide;
+// Which of kTileWeights the step that begins with h intervals has.
+constexpr uint32_t weights_step(uint32_t h) {
+    return std::min(static_cast<uint32_t>(std::bit_width(h)), kTileSteps) - 1;
 }
 
 // Which bands of a tile had a block that is not empty: edges, faces.
@@ -41,13 +41,27 @@ class TileCoder : private BandCoder<Coder> {
     using BandCoder<Coder>::models_;
     using BandCoder<Coder>::work_;
 
+    // The details in the row of an earlier tile beside this one, or none.
+    struct Beyond {
+        const int32_t* details = nullptr;
+        const TileSide* side = nullptr;
+        uint32_t h = 0;
+        bool is_across = false;  // whether its second component is this tile's third
+
+        // Writes the magnitudes of the face, or the edge that goes on straight, beside place t of this tile's side.
+        void load(bool is_face, uint32_t t, uint32_t* magnitudes) const;
+    };
     // What is known of a tile before it is coded.
     struct Known {
         bool side[4];                // the details on a side
         uint32_t left[2], above[2];  // as flags of blocks outside, of edges and of faces
+        Beyond beyond_left, beyond_above;
     };
 
-    Known known_of(const QuadComplex& complex, uint32_t tile, const TileFlags* flags) const;
+    Known known_of(const QuadComplex& complex, const TilePlanes& planes, uint32_t tile, const int32_t* details,
+                   const TileFlags* flags) const;
+    Beyond beyond(const QuadComplex& complex, const TilePlanes& planes, uint32_t half_edge,
+                  const int32_t* details) const;
     bool code_band(const Band& band, const BandSurroundings& around, uint32_t h, const Known& known, uint8_t* full);
     uint32_t code_flags(const Band& band, const BandSurroundings& around, uint32_t row, uint32_t blocks,
                         const Known& known);
@@ -92,7 +106,25 @@ void TileCoder<Coder>::share_sides(const QuadComplex& complex, const TilePlanes&
 }
 
 template <class Coder>
-typename TileCoder<Coder>::Known TileCoder<Coder>::known_of(const QuadComplex& complex, uint32_t tile,
+void TileCoder<Coder>::Beyond::load(bool is_face, uint32_t t, uint32_t* magnitudes) const {
+    const int32_t* v = details + (is_face ? side->faces.at(h - 1 - t) : side->across.at(h - t));
+    magnitudes[0] = magnitude_of(v[0]);
+    magnitudes[1] = magnitude_of(v[is_across ? 2 : 1]);
+    magnitudes[2] = magnitude_of(v[is_across ? 1 : 2]);
+}
+
+template <class Coder>
+typename TileCoder<Coder>::Beyond TileCoder<Coder>::beyond(const QuadComplex& complex, const TilePlanes& planes,
+                                                           uint32_t half_edge, const int32_t* details) const {
+    const uint32_t mate = complex.mate[half_edge];
+    if (mate >= half_edge) return {};
+    return {details + tile_of(mate) * planes.details() - planes.horizontal(), &planes.sides[side_of(mate)], planes.h,
+            is_in_frames(models_.kind) && (side_of(mate) + side_of(half_edge)) % 2 != 0};
+}
+
+template <class Coder>
+typename TileCoder<Coder>::Known TileCoder<Coder>::known_of(const QuadComplex& complex, const TilePlanes& planes,
+                                                            uint32_t tile, const int32_t* details,
                                                             const TileFlags* flags) const {
     Known known{};
     const TileFlags* beside[4];
@@ -101,6 +133,8 @@ typename TileCoder<Coder>::Known TileCoder<Coder>::known_of(const QuadComplex& c
         known.side[s] = mate < 4 * tile + s;
         beside[s] = mate < 4 * tile ? flags + tile_of(mate) : nullptr;
     }
+    known.beyond_above = beyond(complex, planes, 4 * tile, details);
+    known.beyond_left = beyond(complex, planes, 4 * tile + 3, details);
     const TileFlags* left = beside[3] ? beside[3] : beside[1] ? beside[1] : beside[2] ? beside[2] : beside[0];
     for (uint32_t f = 0; f < 2; ++f) {
         known.above[f] = beside[0] ? (*beside[0])[f] : 1;
@@ -113,9 +147,8 @@ template <class Coder>
 bool TileCoder<Coder>::code_step(const QuadComplex& complex, const TilePlanes& planes, int32_t* details,
                                  int32_t* parents, TileFlags* flags) {
     const TilePlanes parent_planes(planes.h / 2);
-    const auto& weights =
-        kBandWeights[static_cast<size_t>(models_.kind)][has_fine_weights(complex.tiles, 2 * planes.h)];
-    const bool turned = models_.kind == CoefficientKind::kInFrames;
+    const bool turned = is_in_frames(models_.kind);
+    const auto& weights = kTileWeights[turned][weights_step(planes.h)];
     for (uint32_t t = 0; t < complex.tiles; ++t) {
         const LevelBands bands = planes.bands(details + t * planes.details());
         LevelBands of_parents;
@@ -124,7 +157,7 @@ bool TileCoder<Coder>::code_step(const QuadComplex& complex, const TilePlanes& p
             return BandSurroundings{o,        parents ? &of_parents.of(o) : nullptr, horizontal,
                                     vertical, weights[static_cast<size_t>(o)],       {}};
         };
-        const Known known = known_of(complex, t, flags);
+        const Known known = known_of(complex, planes, t, details, flags);
         flags[t] = {0, 0};
         if (!code_band(bands.horizontal, around(Orientation::kHorizontal, nullptr, nullptr), planes.h, known,
                        &flags[t][0]) ||
@@ -198,6 +231,10 @@ bool TileCoder<Coder>::code_band(const Band& band, const BandSurroundings& aroun
     const uint32_t first = is_vertical && known.side[3] ? 1 : 0;
     const uint32_t last = is_vertical && known.side[1] ? band.columns - 1 : band.columns;
     std::fill_n(work_.magnitudes - 3, (size_t{band.columns} + 2) * 3, 0u);  // includes the margin at either end
+    if (!is_horizontal && known.beyond_above.side) {
+        for (uint32_t c = 0; c < band.columns; ++c)
+            known.beyond_above.load(is_face, c, work_.magnitudes + size_t{c} * 3);
+    }
     std::fill_n(work_.full_above, blocks, h < kLeastFlaggedTile ? 1u : known.above[is_face]);
     for (uint32_t row = 0; row < band.rows; ++row) {
         const bool begins_blocks = row % 8 == 0 && row / 8 < blocks;
@@ -215,11 +252,13 @@ bool TileCoder<Coder>::code_band(const Band& band, const BandSurroundings& aroun
                 expect(around, row, begin, end, work_);  // weighs the parents, for the next row, too
                 continue;
             }
-            uint32_t before[3];
-            if (begin == 1)
+            uint32_t before[3] = {0, 0, 0};
+            if (begin == 1) {
                 for (uint32_t k = 0; k < 3; ++k) before[k] = magnitude_of(values[k]);
-            if (begin < end && !this->code_run(band, around, row, begin, end, begin == 1 ? before : nullptr))
-                return false;
+            } else if (begin == 0 && !is_vertical && known.beyond_left.side) {
+                known.beyond_left.load(is_face, band.rows - 1 - row, before);  // the side runs upwards
+            }
+            if (begin < end && !this->code_run(band, around, row, begin, end, before)) return false;
         }
         if (begins_blocks) {  // magnitudes in empty blocks are those of the row above, which belongs to other blocks
             for (uint32_t b = 0; b < blocks; ++b) {

@@ -13,7 +13,13 @@ enum class CoefficientKind : uint8_t {
     kPlain,     // x, y, z: lossless positions
     kInFrames,  // a normal component and two tangential ones: lossy positions
     kPlanes,    // attribute planes
+    kTiles,     // as kPlain and kInFrames, of tiles
+    kTilesInFrames,
 };
+inline constexpr size_t kCoefficientKinds = 5;
+constexpr bool is_in_frames(CoefficientKind kind) {
+    return kind == CoefficientKind::kInFrames || kind == CoefficientKind::kTilesInFrames;
+}
 
 // What each magnitude nearby adds to the expected one, in 1/256 of it.
 struct BandWeights {
@@ -34,7 +40,7 @@ inline constexpr BandWeights kBaseWeights[2] = {
     {80, 48, 0, 0, 0, 0, 0, 0, 96, 48, 131072},
 };
 
-// By kind; coarse or fine; horizontal, vertical or diagonal; first or later component.
+// Of squares, by kind; coarse or fine; horizontal, vertical or diagonal; first or later component.
 inline constexpr BandWeights kBandWeights[3][2][3][2] = {
     {
         {
@@ -74,8 +80,57 @@ inline constexpr BandWeights kBandWeights[3][2][3][2] = {
     },
 };
 
+// Of tiles: plain or in frames; by wavelet step, the last one stands for all finer ones; then as above.
+inline constexpr uint32_t kTileSteps = 4;
+inline constexpr BandWeights kTileWeights[2][kTileSteps][3][2] = {
+    {
+        {
+            {{0, 22, 0, 0, 0, 0, 0, 32, 0, 0, 5655}, {0, 27, 0, 0, 0, 0, 0, 20, 51, 13, 4858}},
+            {{26, 0, 0, 0, 0, 49, 0, 2, 0, 0, 4181}, {5, 0, 0, 0, 0, 31, 0, 13, 42, 14, 4372}},
+            {{0, 0, 0, 0, 0, 44, 29, 0, 0, 0, 2419}, {0, 0, 0, 0, 0, 23, 29, 0, 49, 15, 3006}},
+        },
+        {
+            {{10, 30, 23, 24, 15, 0, 0, 9, 0, 0, 717}, {9, 23, 9, 22, 9, 0, 0, 8, 43, 23, 850}},
+            {{15, 7, 0, 29, 9, 18, 0, 4, 0, 0, 815}, {4, 4, 1, 25, 6, 18, 0, 4, 46, 20, 684}},
+            {{7, 6, 14, 13, 0, 34, 37, 2, 0, 0, 284}, {11, 0, 15, 8, 0, 31, 32, 1, 33, 28, 191}},
+        },
+        {
+            {{1, 50, 1, 27, 8, 0, 0, 7, 0, 0, 171}, {1, 45, 0, 21, 6, 0, 0, 7, 60, 35, 104}},
+            {{36, 1, 0, 30, 7, 15, 0, 1, 0, 0, 157}, {27, 1, 0, 24, 4, 11, 0, 1, 61, 43, 75}},
+            {{0, 1, 0, 12, 1, 30, 28, 0, 0, 0, 61}, {3, 1, 3, 9, 1, 21, 25, 0, 56, 46, 10}},
+        },
+        {
+            {{1, 48, 5, 32, 5, 0, 0, 7, 0, 0, 57}, {1, 40, 8, 26, 3, 0, 0, 1, 48, 29, 61}},
+            {{32, 8, 1, 34, 5, 13, 0, 3, 0, 0, 36}, {36, 7, 1, 29, 2, 9, 0, 1, 43, 26, 35}},
+            {{1, 1, 4, 16, 1, 23, 29, 1, 0, 0, 38}, {1, 1, 5, 13, 1, 22, 24, 0, 35, 18, 32}},
+        },
+    },
+    {
+        {
+            {{0, 82, 0, 0, 0, 0, 0, 148, 0, 0, 1107}, {0, 84, 0, 0, 0, 0, 0, 47, 22, 21, 188}},
+            {{15, 0, 0, 0, 0, 79, 0, 53, 0, 0, 1006}, {21, 0, 0, 0, 0, 57, 0, 15, 20, 79, 160}},
+            {{0, 0, 0, 0, 0, 37, 46, 0, 0, 0, 194}, {0, 0, 0, 0, 0, 46, 46, 0, 11, 19, 112}},
+        },
+        {
+            {{40, 60, 36, 10, 9, 0, 0, 44, 0, 0, 30}, {33, 43, 24, 8, 2, 0, 0, 27, 9, 28, 0}},
+            {{50, 39, 0, 15, 8, 24, 0, 14, 0, 0, 24}, {15, 29, 0, 7, 2, 30, 0, 8, 9, 62, 0}},
+            {{32, 21, 16, 6, 0, 21, 19, 1, 0, 0, 3}, {4, 2, 1, 2, 0, 32, 30, 1, 8, 34, 0}},
+        },
+        {
+            {{51, 75, 19, 10, 3, 0, 0, 15, 0, 0, 7}, {8, 38, 0, 6, 0, 0, 0, 1, 1, 58, 0}},
+            {{65, 49, 8, 12, 3, 7, 0, 10, 0, 0, 3}, {25, 3, 0, 5, 0, 17, 0, 2, 1, 69, 0}},
+            {{26, 21, 22, 5, 0, 10, 11, 0, 0, 0, 2}, {0, 0, 0, 1, 0, 17, 22, 0, 0, 56, 0}},
+        },
+        {
+            {{43, 66, 17, 7, 1, 0, 0, 0, 0, 0, 1}, {23, 15, 0, 7, 0, 0, 0, 1, 0, 115, 0}},
+            {{60, 51, 9, 6, 1, 4, 0, 0, 0, 0, 1}, {21, 0, 0, 7, 0, 0, 0, 1, 0, 0, 0}},
+            {{10, 20, 11, 5, 0, 3, 12, 0, 0, 0, 1}, {0, 0, 0, 8, 0, 19, 10, 0, 0, 0, 0}},
+        },
+    },
+};
+
 // Two characters per model: age_code * 32 + probability_code, as hexadecimal digits, in the order of BandModels.
-inline constexpr const char* kTrainedModels[3] = {
+inline constexpr const char* kTrainedModels[kCoefficientKinds] = {
     "1010101b1010101a1010101f1010101010101010101010101010101010101010101010101010101010101010101010101010101010"
     "108b890b1010101010101010101010acc70910101010101010101010108de8051010101010101010101010aee9ca4d100e10101010"
     "10101010cfeae98c0f5110120e1010101010d0ebebac8f3010100e1010101010d0edecedce8f4f9011521515150bf1eeedeecfb0b0"
@@ -130,6 +185,42 @@ inline constexpr const char* kTrainedModels[3] = {
     "91f2d28deeed6feff052d2f18ccdee90d0d19292d36cedeef0eff14feff091f0d192f2f391d2d192f2d3accdeeaeeeefaeceeed0f0"
     "f091b2f1aecfcfb291d171b2d14eb0afb0cff0afd0d18fce8ff0eff0b2f2928dedef8fafd0929172ceedcd91d1d152b2538eee6ff0"
     "eff1cfeff0d0f0f154f3f3b2f2f294b2d3adedeead8eee8eceeed0f0f071d1b1ceefaf72d1b1b1d1f211d0ae8faeaeb1d1d0adcfaf",
+    "10101010101010101010101f1010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "10101010101010101010101010101010101010101010101010101010108d870d1010101010101010101010eda98c0e101010101010"
+    "10101010efeaaa0910101010101010101010b0cbcbae8d100e10101010101010f1edecce4faf929016110b101010d1ceedeeefcf90"
+    "928f90500c1010f2efeff0f0f0f0b0b08f132e924fd2f1f0d0f0d0d1f1b2d1b1b2b3b2f4d1b1f1d2d1d1d1f1d2f2d1d2b2f5f3d2b2"
+    "f2f2f3f2f2f2d2f2d2d3f2f2f1f1f1f1f1d1f1f1d2d17133d3f3f3f3f2f2f2d2f2f2d2f272b3101010101010101010101010101010"
+    "1010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "1010ed870c1010101010101010101010cec98a0e10101010101010101010cfeaca8c0c101010101010101010f0ecea8e90500c1010"
+    "1010101010f1edeccd8e902f1515901350120ed2eeedceee8f91908f1216115114d2efd0efefd0d0d0b19231919291f3d0f0f0f0d0"
+    "f1d0b2d1b1b19171f4f2f1f1f1f1f1f2f2f2f2f2d2d2f4f3d2f3f2f2d2f2f2f2d3d2d2d3d2f2f2d1d1f1f1f1f1d2d1b28f92d3f3d2"
+    "f3f2d2f2d2d1d2d1f2d2b2101010101010101010101010101010101010101010101010101010101010101010101010101010101010"
+    "101010101010101010101010101010101010101010101010101010101010101010101010101010101010cd06101010101010101010"
+    "101010eea8091010101010101010101010efea8a4e0e101010101010101010f0eceaac4c0e1010101010101010f1cdeccd8d904e0c"
+    "101010101010f2cfeeceefceaf2f7151162f9012f3f0d0f0d0f0d0d0b1b170915453d3f2f1f0f1f1f1d1d0b1d2d1d2b2f5f3f2f2f2"
+    "f2f2f2d2b2f2d1d2d2d2d2f1d1d1f1f1f0b0d1d1d19132d4f3d2d2b1f2f1f2f1d1d2d1d2b310101010101010101010101010101010"
+    "101010101010101010101010101010101010f2d0eecd690e1010101010101010101010101010101010101010101010101010edecf1"
+    "adecf0afcdd1efedf1aeedf1eeedf0d0eef1cfeff2afeef2eeedf1eeeef0efeef2cdedf1cdedf1afcff2ceedf1adedf08feef1f0ce"
+    "b1eeeff0efeef0eeeff0eeeff0efefd0cecff0cecff0cfcecfedcdf1ededf0aeedf1efeef18eeef1eeedf0cfeef2d0aff2afeed1ef"
+    "edd1efeef1efeef1ceeef2aeeef1cfeff2ceedd1eeedf0efeef1f0cef1eeeff1cfeef0eef0f1eef0f1efeff0cfeef0efeff0efeeef",
+    "02664647e98accadcdcf6f12e6684d0e10101010101010101010e8c74b50120e1010101010101010eae80710101010101010101010"
+    "10eae989100e101010101010101010eae98a0e120e1010101010101010ebe98c0810101010101010101010eceacb2e0b1010101010"
+    "10101010edebeb8d0d0c1010101010101010eeecedcd4d100b10101010101010efeeedeeae908f0f100e10101010f0eeeeefce2f6f"
+    "8f50140c101010d1efefefefd0d0d1920f12925111f2f0f0f0f0d0b1b1b29195131132f4f2f1f1f1f1f1f1d1d1b1929211f4f3f3f2"
+    "f2f2f2d2f2d2b2d232b3f2f2f1f1f1f1f1f1f1b2d2b213b2f3f3f2f2f2f2f2f2f2f2b2d2d2b3cea70a1010101010101010101010f0"
+    "e7071010101010101010101010d127091010101010101010101010f1e90b4e0e10101010101010101071ca890c1010101010101010"
+    "1010b14aca0c0e101010101010101010d28aab8c100e1010101010101010b1aacc2d8f500e10101010101010f2accb8f0e0b101010"
+    "1010101010f2cd4d4f500f301010121212120ef3cfceee4f0f0f8e12121212120ef3f0f0cfaf6fd0af1292900f0e10f4f1f0b0f0d0"
+    "8f90341330521713f5f2f1d1f1d1b15152b291127193f5f3b2f3f2b25292b212b254b375f3b1d1d1b0f1d1b2b2b212915192f4d2f3"
+    "f3d2f2d252b3b192129491c90a1010101010101010101010104b6b0e10101010101010101010102d0a101010101010101010101010"
+    "8f8f0d10101010101010101010108b0b1010101010101010101010104b07101010101010101010101010cb05101010101010101010"
+    "101010ede9ac0a10101010101010101010ee6aab0f0c101010101010101010f0cccd8e30500c10101010101010f1ceedac2e0f120e"
+    "101010101010f2f0ee8e8f70918e111012120e10d3f1f0cfcf904f90904d0e101010f3d2f1d1b0b1f0b1d15292931152b4f3f2f2d2"
+    "f2d292315212929351f2f1d1f1d0f1d1b1719390129410f4f3f2f392f2b1d1d21271909291e2e4e6a7c7c8c9c9a9caea6beb8cecad"
+    "ee8eefcfd0f1b1f273f4b4d5b5f676775678d3b1ce2e4b0e1010101010101010101010101010101010101010101010101010f0eef2"
+    "b5f2f48aebcdeeedd0b2aff28aeaedf1f0f395d2f58eceb0f0eef2efedd0f1f0f3b3f1f592cfd2b6f3f4ccebeeacebed6eeeeff0ee"
+    "f2b1f1d38dadefb1f1f371d194af8eb18dacd02e8eb00d6dcdf0edf394d0b50baaefefedf116d0b30ecbaef1509493d19510add0f0"
+    "edf3f0ce50f1b07452f0f430d0b694b1d56dccd02eaccf10add1f0edf491cfd42cccf092cfd392d1760f4e928eccb0112e930aaace",
 };
 
 // Probability of a zero in 1/65536: 1 / (1 + e^(0.4 (code - 16))), rounded down, at least 200 and at most 65336.

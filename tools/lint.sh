@@ -28,7 +28,7 @@ declare -A may_include=(
     [corpus]=""
     [tools]="corpus"
     [tools/rd]="tools corpus"
-    [tools/train]="format decoder/squares"
+    [tools/train]="format decoder/squares encoder/tiles"
 )
 readonly MOST_LINES=500
 

@@ -103,7 +103,7 @@ class TileDecoder {
 template <class Wavelet>
 Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
                    float** samples) {
-    new (ws.models) BandModels(coefficient_kind_of(header));
+    new (ws.models) BandModels(tile_kind_of(header));
     TileDecoder<Wavelet> decoder(header, level, ws);
     for (uint32_t l = header.level_count; l-- > level;) {
         Chunk chunk;

@@ -130,7 +130,7 @@ std::vector<std::vector<uint8_t>> TileLevelCoder::code_levels(const Header& head
     const QuadComplex& complex = coded_.complex.view();
     TilePyramid<int32_t> pyramid = quantized(header);
     const uint32_t steps = pyramid.steps(), columns = (1u << steps) + 1;
-    BandModels models(coefficient_kind_of(header));
+    BandModels models(tile_kind_of(header));
     OwnBandWork work(columns);
     std::vector<TileFlags> flags(complex.tiles);
     std::vector<std::vector<uint8_t>> streams;

@@ -1,8 +1,9 @@
-// Prints new tables for format/trained_models.h, made from .gim files of the layout `gim` with one image:
+// Prints new tables for format/trained_models.h, made from .gim files:
 //   gim_train a.gim b.gim ...
-// Lossy positions train the tables for coefficients in frames, lossless positions those for plain coefficients, planes
-// their own. A table that no file trains stays unchanged. Weights decide which model takes a decision. So put new
-// weights into the header, build, encode the files again, and take the states from a second run.
+// of the layout `gim` with one image, and of the layout `tiles`. Lossy positions train the tables for coefficients in
+// frames, lossless positions those for plain coefficients, planes and tiles their own. A table that no file trains stays
+// unchanged. Weights decide which model takes a decision. So put new weights into the header, build, encode the files
+// again, and take the states from a second run.
 //
 // 1. Weights, per coefficient class. The expected magnitude is e = sum of weight * magnitude nearby. The fit makes the
 //    magnitude m, taken as geometric with mean e, cost fewest bits: (m + 1) log(1 + e) - m log e. Adam works on the
@@ -17,123 +18,21 @@
 #include <iterator>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
-#include "decoder/squares/square_decoder.h"
-#include "format/band_code.h"
-#include "format/plane_code.h"
+#include "tools/train/training_image.h"
 
 namespace gim {
 namespace {
 
 constexpr size_t kMostEvents = 1500;
-constexpr size_t kMostDecisions[3] = {3000, 400, 1500};  // by kind: lossless files are long
-constexpr CoefficientKind kKinds[3] = {CoefficientKind::kPlain, CoefficientKind::kInFrames, CoefficientKind::kPlanes};
+// By kind: lossless files are long.
+constexpr size_t kMostDecisions[kCoefficientKinds] = {3000, 400, 1500, 3000, 400};
+constexpr CoefficientKind kSquareKinds[3] = {CoefficientKind::kPlain, CoefficientKind::kInFrames,
+                                             CoefficientKind::kPlanes};
+constexpr CoefficientKind kTileKinds[2] = {CoefficientKind::kTiles, CoefficientKind::kTilesInFrames};
 constexpr int kSteps = 800;  // of Adam
 constexpr double kLeastWeight = 1e-3;
-
-// The bands of an image, coarsest first.
-struct Level {
-    uint32_t columns = 0, rows = 0;  // of the image that the bands lead to
-    std::vector<int32_t> values[3];
-    OwnSharedRim rim{nullptr, 0};  // where mates share their details
-
-    LevelBands bands() {
-        return {{values[0].data(), low_count(rows), high_count(columns)},
-                {values[1].data(), high_count(rows), low_count(columns)},
-                {values[2].data(), high_count(rows), high_count(columns)}};
-    }
-};
-struct Image {
-    CoefficientKind kind = CoefficientKind::kPlain;
-    std::vector<int32_t> base;
-    std::vector<Level> levels;
-};
-
-// A coder that only records the decisions.
-struct Listener {
-    static constexpr bool kWrites = true;
-    std::vector<std::pair<const BitModel*, uint8_t>> decisions;
-
-    uint32_t code_bit(BitModel& model, uint32_t bit) {
-        decisions.emplace_back(&model, static_cast<uint8_t>(bit));
-        return bit;
-    }
-    uint32_t code_raw(uint32_t value, uint32_t) { return value; }
-};
-
-template <class Coder>
-bool code_levels(BandCoder<Coder>& coder, Image& image, size_t begin, size_t end) {
-    if (begin == 0 && !coder.code_base({image.base.data(), 2, 2})) return false;
-    for (size_t l = begin; l < end; ++l) {
-        LevelBands parents;
-        if (l > 0) parents = image.levels[l - 1].bands();
-        if (!coder.code_level(image.levels[l].bands(), l > 0 ? &parents : nullptr, image.levels[l].rim.view()))
-            return false;
-    }
-    return true;
-}
-
-Image blank_image(CoefficientKind kind, uint32_t exponent) {
-    Image image;
-    image.kind = kind;
-    image.base.resize(12);
-    for (uint32_t e = 1; e <= exponent; ++e) {
-        Level level;
-        level.columns = level.rows = (1u << e) + 1;
-        for (auto& values : level.values) values.resize(size_t{level.rows} * level.columns * 3);  // more than enough
-        image.levels.push_back(std::move(level));
-    }
-    return image;
-}
-
-// Reads the coefficients of a file's only image, and of its planes.
-Status read_images(std::span<const uint8_t> file, std::vector<Image>* images) {
-    Header header;
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-    if (Status s = parse_header(file, no_limits, &header); s != Status::kOk) return s;
-    if (header.layout != FileLayout::kSquares || header.image_count() != 1) return Status::kBadArgument;
-    Image positions = blank_image(coefficient_kind_of(header), header.side_exponents[0]);
-    BandModels models(positions.kind);
-    if (header.tangential > 0) {
-        SeamTable seams;
-        if (Status s = read_seams(header, file, 0, &seams); s != Status::kOk) return s;
-        for (Level& level : positions.levels) level.rim = OwnSharedRim(&seams, level.columns);
-    }
-    OwnBandWork work(header.side(0));
-    size_t done = 0;
-    for (uint32_t l = header.level_count_of(0); l-- > 0;) {
-        Chunk chunk;
-        uint64_t offset = 0;
-        std::span<const uint8_t> payload;
-        if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
-        if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
-        RangeDecoder decoder(payload);
-        BandCoder<RangeDecoder> coder(&decoder, &models, work.view());
-        const size_t end = positions.levels.size() - l;
-        if (!code_levels(coder, positions, done, end) || !decoder.intact()) return Status::kMalformed;
-        done = end;
-    }
-    images->push_back(std::move(positions));
-    for (uint32_t kind = 0; kind < kPlaneKinds; ++kind) {
-        Chunk chunk;
-        uint64_t offset = 0;
-        std::span<const uint8_t> payload;
-        PlaneChunk stored;
-        if (!find_chunk(header, plane_type(kind), &chunk, &offset)) continue;
-        if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
-        if (Status s = parse_plane(payload, header, 0, no_limits, &stored); s != Status::kOk) return s;
-        Image plane = blank_image(CoefficientKind::kPlanes, stored.side_exponents[0]);
-        BandModels plane_models(plane.kind);
-        OwnBandWork plane_work(stored.side(0));
-        RangeDecoder decoder(stored.stream);
-        BandCoder<RangeDecoder> coder(&decoder, &plane_models, plane_work.view());
-        if (!code_levels(coder, plane, 0, plane.levels.size()) || !decoder.intact()) return Status::kMalformed;
-        images->push_back(std::move(plane));
-    }
-    return Status::kOk;
-}
 
 // ---- weights --------------------------------------------------------------------------------------------------------
 
@@ -191,29 +90,27 @@ bool empty(const Band& band, uint32_t row, uint32_t column) {
 }
 
 // Returns the coefficients of one class that lie outside of empty blocks.
-std::vector<Event> events_of(std::vector<Image>& images, CoefficientKind kind, bool fine, Orientation orientation,
-                             bool later) {
+std::vector<Event> events_of(const TrainingImages& images, CoefficientKind kind, uint32_t weights,
+                             Orientation orientation, bool later) {
     std::vector<Event> all;
-    for (Image& image : images) {
-        if (image.kind != kind) continue;
+    for (const auto& image : images) {
+        if (image->kind() != kind) continue;
         std::vector<Event> events;
-        for (size_t l = 0; l < image.levels.size(); ++l) {
-            if ((std::min(image.levels[l].columns, image.levels[l].rows) >= kFineSide) != fine) continue;
-            const LevelBands level = image.levels[l].bands(),
-                             parents = l > 0 ? image.levels[l - 1].bands() : LevelBands{};
-            const Band& band = level.of(orientation);
+        image->for_each_bands([&](const TrainingBands& b) {
+            if (b.weights != weights) return;
+            const Band& band = b.bands.of(orientation);
             for (uint32_t row = 0; row < band.rows; ++row) {
                 for (uint32_t column = 0; column < band.columns; ++column) {
-                    if (empty(band, row / 8 * 8, column / 8 * 8)) {
+                    if (b.has_flags && empty(band, row / 8 * 8, column / 8 * 8)) {
                         column |= 7;
                         continue;
                     }
-                    if (image.levels[l].rim.view().is_copy(orientation, row, column)) continue;
+                    if (!b.is_coded(orientation, row, column)) continue;
                     for (uint32_t k = later ? 1 : 0; k < (later ? 3u : 1u); ++k)
-                        events.push_back(event_at(level, parents, orientation, row, column, k));
+                        events.push_back(event_at(b.bands, b.parents, orientation, row, column, k));
                 }
             }
-        }
+        });
         const size_t stride = events.size() / kMostEvents + 1;
         for (size_t i = 0; i < events.size(); i += stride) all.push_back(events[i]);
     }
@@ -255,21 +152,20 @@ BandWeights fit_weights(const std::vector<Event>& events) {
 
 // ---- states ---------------------------------------------------------------------------------------------------------
 
-std::string fit_states(std::vector<Image>& images, CoefficientKind kind) {
+std::vector<BitModel> fresh_models(CoefficientKind kind) {
+    std::vector<BitModel> fresh;
+    BandModels(kind).for_each([&](BitModel& model) { fresh.push_back(model); });
+    return fresh;
+}
+
+std::string fit_states(const TrainingImages& images, CoefficientKind kind) {
     using Bits = std::vector<uint8_t>;
     std::vector<std::vector<Bits>> seen;  // per model and file
-    for (Image& image : images) {
-        if (image.kind != kind) continue;
-        BandModels models(kind);
-        std::unordered_map<const BitModel*, size_t> number;
-        models.for_each([&](BitModel& model) { number.emplace(&model, number.size()); });
-        Listener listener;
-        OwnBandWork work(image.levels.back().columns);
-        BandCoder<Listener> coder(&listener, &models, work.view());
-        (void)code_levels(coder, image, 0, image.levels.size());
-        std::vector<Bits> bits(number.size());
-        for (const auto& [model, bit] : listener.decisions) {
-            Bits& b = bits[number[model]];
+    for (const auto& image : images) {
+        if (image->kind() != kind) continue;
+        std::vector<Bits> bits(fresh_models(kind).size());
+        for (const auto& [model, bit] : image->record().decisions) {
+            Bits& b = bits[model];
             if (b.size() < kMostDecisions[static_cast<size_t>(kind)]) b.push_back(bit);
         }
         seen.resize(bits.size());
@@ -299,30 +195,17 @@ std::string fit_states(std::vector<Image>& images, CoefficientKind kind) {
     return codes;
 }
 
-// Counts the bits that a perfect coder would take.
-struct Meter {
-    static constexpr bool kWrites = true;
-    double bits = 0;
-
-    uint32_t code_bit(BitModel& model, uint32_t bit) {
-        const double zero = model.zero_probability() / 65536.0;
+// What a perfect coder would take.
+double coded_bytes(TrainingImage& image) {
+    std::vector<BitModel> models = fresh_models(image.kind());
+    const Recording recording = image.record();
+    auto bits = static_cast<double>(recording.raw_bits);
+    for (const auto& [number, bit] : recording.decisions) {
+        const double zero = models[number].zero_probability() / 65536.0;
         bits -= std::log2(bit ? 1 - zero : zero);
-        model.update(bit);
-        return bit;
+        models[number].update(bit);
     }
-    uint32_t code_raw(uint32_t value, uint32_t count) {
-        bits += count;
-        return value;
-    }
-};
-
-double coded_bytes(Image& image) {
-    Meter meter;
-    BandModels models(image.kind);
-    OwnBandWork work(image.levels.back().columns);
-    BandCoder<Meter> coder(&meter, &models, work.view());
-    (void)code_levels(coder, image, 0, image.levels.size());
-    return meter.bits / 8;
+    return bits / 8;
 }
 
 // ---- output ---------------------------------------------------------------------------------------------------------
@@ -332,44 +215,55 @@ void print(const BandWeights& w) {
                 w.horizontal, w.vertical, w.cross, w.first, w.second, w.constant);
 }
 
+// current: by orientation, first and later. They stay where no file trains them.
+void print_weights(const TrainingImages& images, CoefficientKind kind, uint32_t number,
+                   const BandWeights (&current)[3][2]) {
+    std::printf("        {\n");
+    for (size_t o = 0; o < 3; ++o) {
+        std::printf("            {");
+        for (const bool later : {false, true}) {
+            const auto events = events_of(images, kind, number, static_cast<Orientation>(o), later);
+            print(events.empty() ? current[o][later] : fit_weights(events));
+            std::printf(later ? "},\n" : ", ");
+        }
+    }
+    std::printf("        },\n");
+}
+
 int run(std::span<char*> paths) {
-    std::vector<Image> images;
+    TrainingImages images;
     for (const char* path : paths) {
         std::ifstream stream(path, std::ios::binary);
         const std::vector<char> bytes((std::istreambuf_iterator<char>(stream)), {});
         const std::span<const uint8_t> file = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
         const size_t first = images.size();
-        if (Status s = read_images(file, &images); s != Status::kOk) {
-            std::fprintf(stderr, "gim_train: %s: not a .gim file of layout gim with one image (status %d)\n", path,
+        if (Status s = read_training_images(file, &images); s != Status::kOk) {
+            std::fprintf(stderr, "gim_train: %s: not a .gim file of one square or of tiles (status %d)\n", path,
                          static_cast<int>(s));
             return 1;
         }
         std::fprintf(stderr, "%s: bytes of coefficients with the current tables:", path);
-        for (size_t i = first; i < images.size(); ++i) std::fprintf(stderr, " %.0f", coded_bytes(images[i]));
+        for (size_t i = first; i < images.size(); ++i) std::fprintf(stderr, " %.0f", coded_bytes(*images[i]));
         std::fprintf(stderr, "\n");
     }
     std::printf("// kBandWeights\n");
-    for (const CoefficientKind kind : kKinds) {
+    for (const CoefficientKind kind : kSquareKinds) {
         std::printf("    {\n");
-        for (const bool fine : {false, true}) {
-            std::printf("        {\n");
-            for (size_t o = 0; o < 3; ++o) {
-                std::printf("            {");
-                for (const bool later : {false, true}) {
-                    const auto events = events_of(images, kind, fine, static_cast<Orientation>(o), later);
-                    print(events.empty() ? kBandWeights[static_cast<size_t>(kind)][fine][o][later]
-                                         : fit_weights(events));
-                    std::printf(later ? "},\n" : ", ");
-                }
-            }
-            std::printf("        },\n");
-        }
+        for (const uint32_t fine : {0u, 1u})
+            print_weights(images, kind, fine, kBandWeights[static_cast<size_t>(kind)][fine]);
+        std::printf("    },\n");
+    }
+    std::printf("// kTileWeights\n");
+    for (const CoefficientKind kind : kTileKinds) {
+        std::printf("    {\n");
+        for (uint32_t step = 0; step < kTileSteps; ++step)
+            print_weights(images, kind, step, kTileWeights[is_in_frames(kind)][step]);
         std::printf("    },\n");
     }
     std::printf("// kTrainedModels\n");
-    for (const CoefficientKind kind : kKinds) {
-        std::string codes = fit_states(images, kind);
-        if (codes.empty()) codes = kTrainedModels[static_cast<size_t>(kind)];
+    for (size_t kind = 0; kind < kCoefficientKinds; ++kind) {
+        std::string codes = fit_states(images, static_cast<CoefficientKind>(kind));
+        if (codes.empty()) codes = kTrainedModels[kind];
         for (size_t i = 0; i < codes.size(); i += 106) {
             std::printf("    \"%s\"%s\n", codes.substr(i, 106).c_str(), i + 106 < codes.size() ? "" : ",");
         }
