@@ -1,5 +1,8 @@
 #include "encoder/tiles/make_tiles.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +12,10 @@
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/density.h"
 #include "encoder/surface/closest_point.h"
+#include "encoder/surface/sharp_edges.h"
 #include "encoder/surface/stretch.h"
+#include "encoder/tiles/code_complex.h"
+#include "encoder/tiles/crease_rails.h"
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/split_chords.h"
@@ -37,12 +43,24 @@ Result<TileBase> find_base(const TileableSurface& surface, uint32_t tiles) {
 struct Sampled {
     TileImage tiles;
     GeometryImage atlas;
+    Rails rails;  // of the atlas
 };
-Result<Sampled> sample(const Mesh& dense, const TileMap& map, uint32_t exponent) {
-    GIM_TRY(points, locate_samples(map, 1u << exponent));
-    Sampled sampled{sample_tiles(dense.positions, map, points, exponent), {}};
+Result<Sampled> sample(const TileInput& input, const TileMap& map, uint32_t exponent) {
+    const uint32_t side = 1u << exponent;
+    GIM_TRY(points, locate_samples(map, side));
+    Sampled sampled{sample_tiles(input.mesh.positions, map, points, exponent), {}, {}};
+    GIM_TRY(complex, complex_of(sampled.tiles.quads, sampled.tiles.vertices));
+    CreaseRails creases = crease_rails(input.mesh, input.sharp, map, points, complex.view(), side);
+    if (getenv("DBG")) fprintf(stderr, "tiles %u edges %u held %zu left_out %zu stray %zu rails %zu\n", complex.view().tiles, complex.view().edges, size_t(std::count(creases.half_edge.begin(), creases.half_edge.end(), true)) / 2, map.left_out.size(), map.stray, creases.rails.curves.size());
+    if (getenv("NOHOLD")) creases = {};
+    sampled.tiles.is_sharp = std::find(creases.half_edge.begin(), creases.half_edge.end(), true) != creases.half_edge.end();
     GIM_TRY(atlas, atlas_of(sampled.tiles));
     sampled.atlas = std::move(atlas);
+    if (!sampled.tiles.is_sharp) return sampled;
+    GIM_TRY(sample_at, samples_of_atlas(sampled.tiles));
+    sampled.rails.curves = std::move(creases.rails.curves);
+    for (const uint32_t s : sample_at)
+        sampled.rails.of_sample.push_back(s == kNone ? kNone : creases.rails.of_sample[s]);
     return sampled;
 }
 
@@ -69,7 +87,7 @@ std::vector<double> importance_from(const Mesh& dense, const TileMap& map, const
 }  // namespace
 
 TileableSurface make_tileable(const Mesh& mesh) {
-    TileInput input = make_room_for_tiles(mesh, {});
+    TileInput input = make_room_for_tiles(mesh, getenv("CREASE") ? atof(getenv("CREASE")) > 0 ? find_creases(mesh, atof(getenv("CREASE"))) : sharp_edges(mesh) : std::vector<bool>{});
     split_chords(input.mesh, input.sharp);
     BaseHierarchy hierarchy(input.mesh, input.sharp);
     return {std::move(input), std::move(hierarchy)};
@@ -92,20 +110,22 @@ Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, c
 
     const uint32_t exponent = exponent_within(static_cast<uint32_t>(map.quads.size()), options.samples);
     if (options.density) {
-        GIM_TRY(first, sample(dense, map, exponent));
+        GIM_TRY(first, sample(surface.input, map, exponent));
         map_options.importance = importance_from(dense, map, first.atlas, lossless);
         GIM_TRY(adapted, map_tiles(dense, base, pairing.quads, map_options, clock.progress()));
         map = std::move(adapted);
     }
 
     clock.begin(Stage::kSample);
-    GIM_TRY(sampled, sample(dense, map, exponent));
+    GIM_TRY(sampled, sample(surface.input, map, exponent));
     made.tiles = std::move(sampled.tiles);
     made.atlas = std::move(sampled.atlas);
-    const std::optional<FitOptions> fit_options = first_fit(options);
+    made.rails = std::move(sampled.rails);
+    std::optional<FitOptions> fit_options = first_fit(options);
     if (!fit_options) return made;
 
     clock.begin(Stage::kFit);
+    fit_options->rails = made.rails;
     GIM_TRY(fitted, fit(made.atlas, mesh, *fit_options, clock.progress()));
     made.folds_before_fit = fitted.before.folds;
     made.atlas.positions = std::move(fitted.positions);

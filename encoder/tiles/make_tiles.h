@@ -5,6 +5,7 @@
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/image/geometry_image.h"
+#include "encoder/image/rails.h"
 #include "encoder/surface/mesh.h"
 #include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_image.h"
@@ -23,6 +24,7 @@ TileableSurface make_tileable(const Mesh& mesh);
 struct MadeTiles {
     TileImage tiles;
     GeometryImage atlas;  // of the tiles, as atlas_of() lays them out
+    Rails rails;          // of the atlas: creases on borders of tiles
     double stretch_efficiency = 0;
     uint64_t folds_before_fit = 0;
 };
