@@ -45,8 +45,8 @@ Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, E
     options.layout = layout.layout;
     const bool drops_colors = layout.layout == Layout::kTiles && !options.color_side;
     if (drops_colors) options.color_side = 0;
-    CutPreferences cuts;                      // chosen at the first side, then kept
-    std::optional<TileableSurface> tileable;  // serves every number of tiles
+    CutPreferences cuts;        // chosen at the first side, then kept
+    TileableSurfaces tileable;  // serve every number of tiles
     const EncodeOnce make_and_code = [&](const EncodeOptions& now, const Contest& contest,
                                          const Observer& shown) -> Result<Encoded> {
         EncodeReport report = prepared.report;
@@ -61,7 +61,7 @@ Result<Encoded> encode_as(const LayoutEntry& layout, const Prepared& prepared, E
         cuts = {};
         const bool is_first = now.rate.value == options.rate.value;
         const Observer shown = is_first ? observer : Observer();
-        return layout.layout == Layout::kTiles ? best_of_tiles(make_and_code, now, clock, shown)
+        return layout.layout == Layout::kTiles ? best_of_tiles(make_and_code, now, clock, shown, tileable)
                                                : best_of_sides(make_and_code, now, clock, shown);
     });
 }

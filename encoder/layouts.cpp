@@ -35,8 +35,7 @@ Made tiles_of(const MakeImages& in) {
     if (in.options.normal_side > 0 || in.options.color_side.value_or(0) > 0)
         return Error{Stage::kInput, "tiles hold no normals and no colours; leave them out, or take --layout gim"};
     in.clock.begin(Stage::kCut);
-    if (!in.tileable) in.tileable = make_tileable(in.mesh);
-    GIM_TRY(tiles, make_tiles(*in.tileable, in.mesh, in.options, in.clock));
+    GIM_TRY(tiles, make_tiles(in.tileable.of(in.mesh), in.mesh, in.options, in.clock));
     in.report.stretch_efficiency = tiles.stretch_efficiency;
     in.report.folds_before_fit = tiles.folds_before_fit;
     return tiles_layout(std::move(tiles), in.mesh, in.options);

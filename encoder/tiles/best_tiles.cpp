@@ -1,5 +1,7 @@
 #include "encoder/tiles/best_tiles.h"
 
+#include <array>
+#include <span>
 #include <utility>
 
 #include "encoder/code/rate_target.h"
@@ -9,21 +11,35 @@ namespace gim {
 namespace {
 
 constexpr uint32_t kUsual = 120;
-constexpr uint32_t kOthers[] = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
+constexpr std::array<uint32_t, 2> kOthers = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
+// Between creases, fewer tiles are enough.
+constexpr std::array<uint32_t, 3> kOthersWithCreases = {80, 55, 180};
 
 }  // namespace
 
 Result<Encoded> best_of_tiles(const EncodeOnce& run, const EncodeOptions& whole, const StageClock& clock,
-                              const Observer& observer) {
-    if (whole.tiles > 0) return run(whole, {}, observer);
+                              const Observer& observer, TileableSurfaces& surfaces) {
+    const bool is_open = whole.tiles == 0, is_contest = is_searched(whole.rate);
     EncodeOptions options = whole;
-    options.tiles = kUsual;
+    if (is_open) options.tiles = kUsual;
+    surfaces.keeps_creases = true;
     auto best = run(options, {}, observer);
-    if (!is_searched(whole.rate)) return best;
-    for (const uint32_t tiles : kOthers) {
-        options.tiles = tiles;
+    const auto compete = [&] {
         auto other = run(options, contest_with(best), {});
-        if (improves(other, best, whole.rate)) best = std::move(other);
+        const bool is_better = improves(other, best, whole.rate);
+        if (is_better) best = std::move(other);
+        return is_better;
+    };
+    if (surfaces.keeps_creases && (is_contest || !best.ok())) {
+        surfaces.keeps_creases = false;
+        surfaces.keeps_creases = !compete();
+    }
+    if (is_open && is_contest) {
+        const bool creases = surfaces.keeps_creases;
+        for (const uint32_t tiles : creases ? std::span<const uint32_t>(kOthersWithCreases) : kOthers) {
+            options.tiles = tiles;
+            (void)compete();
+        }
     }
     if (best.ok()) {
         best.value().report.times = clock.times();

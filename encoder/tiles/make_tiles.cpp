@@ -52,7 +52,6 @@ Result<Sampled> sample(const TileInput& input, const TileMap& map, uint32_t expo
     GIM_TRY(complex, complex_of(sampled.tiles.quads, sampled.tiles.vertices));
     CreaseRails creases = crease_rails(input.mesh, input.sharp, map, points, complex.view(), side);
     if (getenv("DBG")) fprintf(stderr, "tiles %u edges %u held %zu left_out %zu stray %zu rails %zu\n", complex.view().tiles, complex.view().edges, size_t(std::count(creases.half_edge.begin(), creases.half_edge.end(), true)) / 2, map.left_out.size(), map.stray, creases.rails.curves.size());
-    if (getenv("NOHOLD")) creases = {};
     sampled.tiles.is_sharp = std::find(creases.half_edge.begin(), creases.half_edge.end(), true) != creases.half_edge.end();
     GIM_TRY(atlas, atlas_of(sampled.tiles));
     sampled.atlas = std::move(atlas);
@@ -86,11 +85,23 @@ std::vector<double> importance_from(const Mesh& dense, const TileMap& map, const
 
 }  // namespace
 
-TileableSurface make_tileable(const Mesh& mesh) {
-    TileInput input = make_room_for_tiles(mesh, getenv("CREASE") ? atof(getenv("CREASE")) > 0 ? find_creases(mesh, atof(getenv("CREASE"))) : sharp_edges(mesh) : std::vector<bool>{});
+TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases) {
+    TileInput input = make_room_for_tiles(mesh, creases);
     split_chords(input.mesh, input.sharp);
     BaseHierarchy hierarchy(input.mesh, input.sharp);
     return {std::move(input), std::move(hierarchy)};
+}
+
+const TileableSurface& TileableSurfaces::of(const Mesh& mesh) {
+    if (keeps_creases && !creased) {
+        const std::vector<bool> creases = sharp_edges(mesh);
+        has_creases = std::find(creases.begin(), creases.end(), true) != creases.end();
+        if (*has_creases) creased = make_tileable(mesh, creases);
+        keeps_creases = *has_creases;
+    }
+    if (keeps_creases) return *creased;
+    if (!smooth) smooth = make_tileable(mesh, {});
+    return *smooth;
 }
 
 Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, const EncodeOptions& options,

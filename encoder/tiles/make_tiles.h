@@ -2,6 +2,9 @@
 // Maximo, Velho, Siqueira. Adaptive Multi-Chart and Multiresolution Mesh Representation. 2013. Section 4.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/image/geometry_image.h"
@@ -18,8 +21,17 @@ struct TileableSurface {
     TileInput input;
     BaseHierarchy hierarchy;
 };
-// mesh: clean. O(F log F).
-TileableSurface make_tileable(const Mesh& mesh);
+// mesh: clean. creases: per half-edge 3f+i whether its edge is one that tiles keep; empty: none is. O(F log F).
+TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases);
+
+// A surface for all runs, with its creases and without. Each is made when it is asked for first.
+struct TileableSurfaces {
+    bool keeps_creases = true;              // of the runs to come
+    std::optional<bool> has_creases;        // known after the first run that keeps them
+    std::optional<TileableSurface> creased, smooth;
+
+    const TileableSurface& of(const Mesh& mesh);
+};
 
 struct MadeTiles {
     TileImage tiles;

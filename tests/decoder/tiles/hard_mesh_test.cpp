@@ -68,7 +68,9 @@ void expect_sound(Complex& complex, uint32_t side) {
         if (mate == kNoMate) continue;
         const bool is_sharp = complex.is_sharp[complex.view.edge[h]];
         for (uint32_t t = 1; t < side; ++t) EXPECT_EQ(hard.along(h, t) == hard.along(mate, side - t), !is_sharp);
-        if (!is_sharp) EXPECT_EQ(hard.along(h, 0), hard.along(mate, side));
+        if (!is_sharp) {
+            EXPECT_EQ(hard.along(h, 0), hard.along(mate, side));
+        }
     }
 }
 

@@ -33,7 +33,9 @@ size_t sharp_count(const Mesh& mesh) {
     for (uint32_t h = 0; h < sharp.size(); ++h) {
         if (!sharp[h]) continue;
         EXPECT_NE(topology.twin[h], kNone);
-        if (topology.twin[h] != kNone) EXPECT_TRUE(sharp[topology.twin[h]]);
+        if (topology.twin[h] != kNone) {
+            EXPECT_TRUE(sharp[topology.twin[h]]);
+        }
         ++count;
     }
     return count / 2;

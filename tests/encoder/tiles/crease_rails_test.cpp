@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "corpus/generators.h"
 #include "encoder/fit/fit_coded.h"
 #include "encoder/fit/fitter.h"
-#include "encoder/surface/closest_point.h"
+#include "encoder/surface/sharp_edges.h"
 #include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/make_tiles.h"
@@ -38,13 +39,18 @@ Vec3 half_of(const Mesh& box) {
     return half;
 }
 
+OwnComplex complex_of_tiles(const NumberedQuads& numbered) {
+    auto complex = complex_of(numbered.quads, static_cast<uint32_t>(numbered.vertices.size()));
+    return std::move(complex.value());
+}
+
 struct BoxOnRails {
     Mesh box = cleaned(corpus::box(6, 0.8, 0.6));
     Vec3 half = half_of(box);
     MappedMesh mapped = gim::mapped(box, 24, 1);
     std::vector<SurfacePoint> points = locate_samples(mapped.map, kSide).value();
     NumberedQuads numbered = number_quads(mapped.map.quads);
-    OwnComplex complex = complex_of(numbered.quads, static_cast<uint32_t>(numbered.vertices.size())).value();
+    OwnComplex complex = complex_of_tiles(numbered);
     CreaseRails creases =
         crease_rails(mapped.input.mesh, mapped.input.sharp, mapped.map, points, complex.view(), kSide);
 
@@ -85,7 +91,7 @@ TEST(CreaseRails, SmoothSurfacesHaveNone) {
     const MappedMesh m = mapped(cleaned(corpus::sphere(6)), 12, 1);
     const auto points = locate_samples(m.map, kSide).value();
     const NumberedQuads numbered = number_quads(m.map.quads);
-    const OwnComplex complex = complex_of(numbered.quads, static_cast<uint32_t>(numbered.vertices.size())).value();
+    const OwnComplex complex = complex_of_tiles(numbered);
     const CreaseRails creases = crease_rails(m.input.mesh, m.input.sharp, m.map, points, complex.view(), kSide);
     EXPECT_TRUE(creases.rails.curves.empty());
     EXPECT_TRUE(creases.rails.of_sample.empty());
@@ -110,14 +116,15 @@ TEST(CreaseRails, SamplesStayOnThemInEveryFit) {
     options.samples = 5000;
     options.rate = {RateTarget::Kind::kPsnr, 60};
     StageClock clock({});
-    auto made = make_tiles(make_tileable(box), box, options, clock);
+    auto made = make_tiles(make_tileable(box, sharp_edges(box)), box, options, clock);
     ASSERT_TRUE(made.ok()) << made.error().message;
     const MadeTiles& tiles = made.value();
     ASSERT_TRUE(tiles.tiles.is_sharp);
     expect_on_rails(tiles.atlas.positions, tiles.rails, half_of(box));
 
     const auto make = [&](const FitFrame& frame) -> std::unique_ptr<FitCodec> {
-        return std::make_unique<TileCodec>(TileCodec::make(tiles.tiles, frame).value());
+        auto codec = TileCodec::make(tiles.tiles, frame);
+        return std::make_unique<TileCodec>(std::move(codec.value()));
     };
     CodedFit fit(tiles.atlas, make, box, 1, tiles.rails);
     Units units = tile_units(tiles.tiles, 12).value();
