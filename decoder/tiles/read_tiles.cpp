@@ -114,8 +114,7 @@ Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, c
         for_each_copy(hard, [&](uint32_t vertex, uint32_t tile, uint32_t sample) {
             to_object(header.origin, header.step, surface.samples + 3 * (tile * surface.tile_size() + sample),
                       out.positions + 3 * size_t{vertex});
-            if (out.texcoords)
-                texcoords.set(tile, sample / width, sample % width, out.texcoords + 2 * size_t{vertex});
+            if (out.texcoords) texcoords.set(tile, sample / width, sample % width, out.texcoords + 2 * size_t{vertex});
         });
         *out.hard_vertices = hard.count;
         finish(hard, hard.count);

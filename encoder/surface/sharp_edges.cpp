@@ -31,7 +31,8 @@ constexpr double kLeastPart = 0.25;
 
 class SharpEdges {
   public:
-    explicit SharpEdges(const Mesh& mesh) : mesh_(mesh), topology_(build_topology(mesh)), surfaces_(mesh.positions.size()) {
+    explicit SharpEdges(const Mesh& mesh)
+        : mesh_(mesh), topology_(build_topology(mesh)), surfaces_(mesh.positions.size()) {
         for (uint32_t f = 0; f < mesh.triangles.size(); ++f) normals_.push_back(normal_of(f));
         angle_.resize(topology_.twin.size());
         for (uint32_t h = 0; h < angle_.size(); ++h) angle_[h] = angle_at(h);
@@ -108,7 +109,8 @@ double SharpEdges::angle_beside(uint32_t h) const {
         const double parallel = way.dot(along) / along.squaredNorm();
         const double outwards = -way.dot(across) / across.norm();
         h = topology_.twin[out];
-        const Vec3 inwards = normals_[face_of(h)].cross(mesh_.positions[to(mesh_, h)] - mesh_.positions[from(mesh_, h)]);
+        const Vec3 inwards =
+            normals_[face_of(h)].cross(mesh_.positions[to(mesh_, h)] - mesh_.positions[from(mesh_, h)]);
         way = parallel * along + outwards * inwards.stableNormalized();
     }
     return most;

@@ -113,8 +113,8 @@ CreaseRails crease_rails(const Mesh& dense, const std::vector<bool>& sharp, cons
     for (const uint32_t end : ends) {
         if (curve_of[end] != kNone) continue;
         const SurfacePoint& point = points[end];
-        const size_t corner = static_cast<size_t>(
-            std::max_element(point.barycentric.begin(), point.barycentric.end()) - point.barycentric.begin());
+        const size_t corner = static_cast<size_t>(std::max_element(point.barycentric.begin(), point.barycentric.end()) -
+                                                  point.barycentric.begin());
         const uint32_t v = map.triangles[point.triangle][corner];
         if (curves.is_corner(v)) {
             curve_of[end] = static_cast<uint32_t>(result.rails.curves.size());

@@ -1,8 +1,6 @@
 #include "encoder/tiles/make_tiles.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,21 +43,30 @@ struct Sampled {
     GeometryImage atlas;
     Rails rails;  // of the atlas
 };
+
+// The same rails for the samples of the atlas.
+Result<Rails> rails_of_atlas(const TileImage& tiles, Rails rails) {
+    if (rails.of_sample.empty()) return rails;
+    GIM_TRY(sample_at, samples_of_atlas(tiles));
+    const std::vector<uint32_t> curve_of = std::move(rails.of_sample);
+    rails.of_sample.clear();
+    for (const uint32_t s : sample_at) rails.of_sample.push_back(s == kNone ? kNone : curve_of[s]);
+    return rails;
+}
+
 Result<Sampled> sample(const TileInput& input, const TileMap& map, uint32_t exponent) {
     const uint32_t side = 1u << exponent;
     GIM_TRY(points, locate_samples(map, side));
     Sampled sampled{sample_tiles(input.mesh.positions, map, points, exponent), {}, {}};
-    GIM_TRY(complex, complex_of(sampled.tiles.quads, sampled.tiles.vertices));
+    TileImage& tiles = sampled.tiles;
+    GIM_TRY(complex, complex_of(tiles.quads, tiles.vertices));
     CreaseRails creases = crease_rails(input.mesh, input.sharp, map, points, complex.view(), side);
-    if (getenv("DBG")) fprintf(stderr, "tiles %u edges %u held %zu left_out %zu stray %zu rails %zu\n", complex.view().tiles, complex.view().edges, size_t(std::count(creases.half_edge.begin(), creases.half_edge.end(), true)) / 2, map.left_out.size(), map.stray, creases.rails.curves.size());
-    sampled.tiles.is_sharp = std::find(creases.half_edge.begin(), creases.half_edge.end(), true) != creases.half_edge.end();
-    GIM_TRY(atlas, atlas_of(sampled.tiles));
+    tiles.is_sharp = std::find(creases.half_edge.begin(), creases.half_edge.end(), true) != creases.half_edge.end();
+    if (tiles.is_sharp) tiles.sharp = std::move(creases.half_edge);
+    GIM_TRY(atlas, atlas_of(tiles));
+    GIM_TRY(rails, rails_of_atlas(tiles, std::move(creases.rails)));
     sampled.atlas = std::move(atlas);
-    if (!sampled.tiles.is_sharp) return sampled;
-    GIM_TRY(sample_at, samples_of_atlas(sampled.tiles));
-    sampled.rails.curves = std::move(creases.rails.curves);
-    for (const uint32_t s : sample_at)
-        sampled.rails.of_sample.push_back(s == kNone ? kNone : creases.rails.of_sample[s]);
+    sampled.rails = std::move(rails);
     return sampled;
 }
 

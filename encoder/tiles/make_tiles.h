@@ -26,8 +26,8 @@ TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases
 
 // A surface for all runs, with its creases and without. Each is made when it is asked for first.
 struct TileableSurfaces {
-    bool keeps_creases = true;              // of the runs to come
-    std::optional<bool> has_creases;        // known after the first run that keeps them
+    bool keeps_creases = true;        // of the runs to come
+    std::optional<bool> has_creases;  // known after the first run that keeps them
     std::optional<TileableSurface> creased, smooth;
 
     const TileableSurface& of(const Mesh& mesh);

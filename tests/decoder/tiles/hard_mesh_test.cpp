@@ -22,7 +22,10 @@ struct Complex {
     std::vector<uint32_t> is_sharp, corner, copies;
 
     Complex(const std::vector<Quad>& quads, uint32_t vertices)
-        : numbers(20 * quads.size()), on_boundary(4 * quads.size()), corner(4 * quads.size()), copies(4 * quads.size()) {
+        : numbers(20 * quads.size()),
+          on_boundary(4 * quads.size()),
+          corner(4 * quads.size()),
+          copies(4 * quads.size()) {
         uint32_t* next = numbers.data();
         for (uint32_t** array : {&view.mate, &view.vertex, &view.edge, &view.lower, &view.valence}) {
             *array = next;
@@ -41,9 +44,7 @@ struct Complex {
     uint32_t shared(uint32_t side) const { return TileSamples(view, side).count(); }
 };
 
-Complex cube() {
-    return {{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}, 8};
-}
+Complex cube() { return {{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}, 8}; }
 Complex strip() { return {{{0, 1, 4, 3}, {1, 2, 5, 4}}, 6}; }
 
 // Expects samples at one place to be one vertex exactly where no sharp edge separates them.
