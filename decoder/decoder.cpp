@@ -106,7 +106,19 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
     return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
-        return reader.mesh(request, {positions, normals, texcoords, triangles}, {scratch, scratch_bytes});
+        return reader.mesh(request, {positions, normals, texcoords, triangles, nullptr}, {scratch, scratch_bytes});
+    });
+}
+
+gim_status gim_decode_hard_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
+                                uint32_t* vertex_count, float* positions, float* normals, float* texcoords,
+                                uint32_t* triangles, void* scratch, size_t scratch_bytes) {
+    if (!positions || !vertex_count) return code(Status::kBadArgument);
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        gim_level_info shared;
+        if (Status s = reader.level_info(request, &shared); s != Status::kOk) return s;
+        *vertex_count = shared.vertex_count;
+        return reader.mesh(request, {positions, normals, texcoords, triangles, vertex_count}, {scratch, scratch_bytes});
     });
 }
 
@@ -115,7 +127,7 @@ gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
     return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
-        return reader.grid(request, {positions, normals, texcoords, triangles}, {scratch, scratch_bytes});
+        return reader.grid(request, {positions, normals, texcoords, triangles, nullptr}, {scratch, scratch_bytes});
     });
 }
 

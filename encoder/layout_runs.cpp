@@ -17,13 +17,14 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
       options_(options),
       clock_(clock),
       observer_(observer),
-      drops_colors_(layout.layout == Layout::kTiles && !options.color_side) {
+      drops_colors_(layout.layout == Layout::kTiles && !options.color_side),
+      tileable_(prepared.mesh) {
     options_.layout = layout.layout;
     if (drops_colors_) options_.color_side = 0;
 }
 
 Result<LayoutRuns::Started*> LayoutRuns::start(const EncodeOptions& now) {
-    Started& started = started_[{now.side, now.tiles}];
+    Started& started = started_[variant_of(now)];
     if (started.run) return &started;
     EncodeReport report = prepared_.report;
     if (drops_colors_ && !prepared_.original.input.appearance.empty())
@@ -45,28 +46,35 @@ Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional
 }
 
 Result<Estimate> LayoutRuns::estimate() {
-    const bool is_tiles = layout() == Layout::kTiles;
+    if (layout() == Layout::kTiles) {
+        GIM_TRY(tried, try_tiles(runs({}), options_, tileable_.has_creases()));
+        return tried[0].estimate;
+    }
     Result<Estimate> best = Error{};
-    std::optional<double> near;
-    for (const EncodeOptions& variant : is_tiles ? tile_variants(options_) : side_variants(options_)) {
-        const auto now = estimate_of(variant, near);
-        if (now.ok() && is_tiles) near = now.value().quantizer;
+    for (const EncodeOptions& variant : side_variants(options_)) {
+        const auto now = estimate_of(variant, {});
         const bool is_better = now.ok() && (!best.ok() || now.value().log_bytes < best.value().log_bytes);
         if (is_better || !(now.ok() || best.ok())) best = now;
     }
     return best;
 }
 
+CodingRuns LayoutRuns::runs(const Contest& contest) {
+    const auto code = [this, contest](const EncodeOptions& variant, const Contest& among) -> Result<Encoded> {
+        GIM_TRY(started, start(variant));
+        auto encoded = started->run->finish(joined(among, contest));
+        started_.erase(variant_of(variant));
+        return encoded;
+    };
+    const auto estimate = [this](const EncodeOptions& variant, std::optional<double> near) {
+        return estimate_of(variant, near);
+    };
+    return {code, estimate};
+}
+
 Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {
-    const CodingRuns runs = {.code = [&](const EncodeOptions& variant, const Contest& among) -> Result<Encoded> {
-                                 GIM_TRY(started, start(variant));
-                                 auto encoded = started->run->finish(joined(among, contest));
-                                 started_.erase({variant.side, variant.tiles});
-                                 return encoded;
-                             },
-                             .estimate = [&](const EncodeOptions& variant,
-                                             std::optional<double> near) { return estimate_of(variant, near); }};
-    return layout() == Layout::kTiles ? best_of_tiles(runs, now, clock_) : best_of_sides(runs, now, clock_);
+    return layout() == Layout::kTiles ? best_of_tiles(runs(contest), now, tileable_.has_creases(), clock_)
+                                      : best_of_sides(runs(contest), now, clock_);
 }
 
 Result<Encoded> LayoutRuns::best(const Contest& contest) {

@@ -5,12 +5,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/code/contest.h"
 #include "encoder/file_run.h"
+#include "encoder/layout/encode_once.h"
 #include "encoder/layouts.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
@@ -45,8 +47,10 @@ class LayoutRuns {
         std::unique_ptr<FileRun> run;
         std::optional<Estimate> estimate;
     };
-    using Variant = std::pair<uint32_t, uint32_t>;  // side, tiles
+    using Variant = std::tuple<uint32_t, uint32_t, bool>;  // side, tiles, creases
+    static Variant variant_of(const EncodeOptions& now) { return {now.side, now.tiles, now.creases}; }
 
+    CodingRuns runs(const Contest& contest);
     Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);
     Result<Started*> start(const EncodeOptions& now);
     Result<Estimate> estimate_of(const EncodeOptions& now, std::optional<double> near);
@@ -57,9 +61,9 @@ class LayoutRuns {
     StageClock& clock_;
     Observer observer_;  // none when it has seen images
     bool drops_colors_;
-    CutPreferences cuts_;                      // chosen at the first side, then kept
-    std::optional<TileableSurface> tileable_;  // serves every number of tiles
-    std::map<Variant, Started> started_;       // that did not end yet
+    CutPreferences cuts_;                 // chosen at the first side, then kept
+    TileableSurfaces tileable_;           // serve every number of tiles
+    std::map<Variant, Started> started_;  // that did not end yet
 };
 
 // Returns whether the images could not be made.

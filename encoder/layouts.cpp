@@ -36,8 +36,7 @@ Made tiles_of(const MakeImages& in) {
     if (in.options.normal_side > 0 || in.options.color_side.value_or(0) > 0)
         return Error{Stage::kInput, "tiles hold no normals and no colours; leave them out, or take --layout gim"};
     in.clock.begin(Stage::kCut);
-    if (!in.tileable) in.tileable = make_tileable(in.mesh);
-    GIM_TRY(tiles, make_tiles(*in.tileable, in.mesh, in.options, in.clock));
+    GIM_TRY(tiles, make_tiles(in.tileable.of(in.options.creases), in.mesh, in.options, in.clock));
     in.report.stretch_efficiency = tiles.stretch_efficiency;
     in.report.folds_before_fit = tiles.folds_before_fit;
     return tiles_layout(std::move(tiles), in.mesh, in.options);
@@ -70,7 +69,7 @@ double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageCl
     options.fit = FitStrength::kOff;
     options.density = false;
     if (options.tiles == 0) options.tiles = kUsualTiles;
-    const auto tiles = make_tiles(make_tileable(mesh), mesh, options, clock);
+    const auto tiles = make_tiles(TileableSurfaces(mesh).of(options.creases), mesh, options, clock);
     if (!tiles.ok()) return 0;
     const auto& [image, atlas, stretch_efficiency, folds] = tiles.value();
     return stretch_efficiency * double(image.positions.size()) / double(atlas.positions.size());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "encoder/base/result.h"
@@ -20,10 +19,10 @@ struct MakeImages {
     const EncodeOptions& options;
     StageClock& clock;
     const Observer& observer;
-    EncodeReport& report;                      // gets the figures of the stages
-    CutPreferences& cuts;                      // squares: empty, or the choice of an earlier call
-    std::optional<TileableSurface>& tileable;  // tiles: empty, or what an earlier call made
-    bool may_grow = true;                      // takes more samples than the options say rather than fail
+    EncodeReport& report;        // gets the figures of the stages
+    CutPreferences& cuts;        // squares: empty, or the choice of an earlier call
+    TileableSurfaces& tileable;  // tiles: with what earlier calls made
+    bool may_grow = true;        // takes more samples than the options say rather than fail
 };
 
 struct LayoutEntry {

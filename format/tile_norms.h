@@ -28,8 +28,13 @@ inline const BandNorms& tile_norms(const TileShape& shape, uint32_t depth) {
     return shape.is_sharp ? kSharpNorms[depth - 1] : kBandNorms[depth - 1];
 }
 
+// The step of the base, against that of its norm, with 5/3. Between creases a surface has few details, so most of a file is
+// its base, and details make up for a coarser one.
+inline constexpr float kSharpBaseStep = 2;
+
 inline float tile_base_step(const TileShape& shape, float quantizer) {
-    return quantizer / tile_norms(shape, shape.exponent).low;
+    const float step = quantizer / tile_norms(shape, shape.exponent).low;
+    return shape.is_sharp ? kSharpBaseStep * step : step;
 }
 
 // depth: 1 for the finest details.

@@ -12,7 +12,7 @@
 namespace gim {
 
 // Source: as code_quads asks for; and bool is_sharp(half_edge), of the code.
-// Fills the complex, whose number of tiles is set. Returns false if the bits say what no writer writes.
+// Fills the complex, whose number of tiles is set; and work.fan, per edge 1 if it is sharp. Returns false if the bits say what no writer writes.
 template <class Coder, class Source>
 bool code_tile_seams(Coder& coder, Source& source, const TileShape& shape, const QuadCodeWork& work,
                      QuadComplex* complex) {

@@ -1,6 +1,7 @@
 #include "tools/decoded.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "gim/decoder.hpp"
 
@@ -21,6 +22,22 @@ gim_status decode_plane(Decoder& decoder, uint32_t image, uint32_t kind, ImagePl
     plane->rows = shape.height;
     plane->values.resize(size_t{3} * shape.width * shape.height);
     return decoder.plane(shape, plane->values);
+}
+
+// Leaves the mesh empty if it has no vertices but the fused ones.
+gim_status decode_hard_mesh(Decoder& decoder, const DecoderLevel& shape, HardMesh* mesh) {
+    const size_t most = size_t{shape.width} * shape.height;
+    HardMesh hard{std::vector<float>(3 * most), std::vector<float>(3 * most), std::vector<float>(2 * most),
+                  std::vector<uint32_t>(size_t{3} * shape.triangle_count)};
+    uint32_t count = 0;
+    const gim_status status =
+        decoder.hard_mesh(shape, &count, {hard.positions, hard.normals, hard.texcoords, hard.triangles});
+    if (status != GIM_OK || count == shape.vertex_count) return status;
+    hard.positions.resize(size_t{3} * count);
+    hard.normals.resize(size_t{3} * count);
+    hard.texcoords.resize(size_t{2} * count);
+    *mesh = std::move(hard);
+    return status;
 }
 
 // Decodes the level, or the coarsest one if the image has no such level.
@@ -45,7 +62,9 @@ gim_status decode_image(Decoder& decoder, uint32_t index, uint32_t level, Decode
     image->triangles.resize(size_t{3} * shape.triangle_count);
     status = decoder.grid(shape, {image->grid, image->grid_normals, image->grid_texcoords, image->grid_triangles});
     if (status != GIM_OK) return status;
-    return decoder.mesh(shape, {image->positions, image->normals, image->texcoords, image->triangles});
+    status = decoder.mesh(shape, {image->positions, image->normals, image->texcoords, image->triangles});
+    if (status != GIM_OK || decoder.info().layout != GIM_LAYOUT_TILES) return status;
+    return decode_hard_mesh(decoder, shape, &image->hard);
 }
 
 }  // namespace
@@ -91,6 +110,13 @@ Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t leve
                                         "; the coarsest level of this file is " + std::to_string(reached)};
     }
     return images;
+}
+
+std::vector<float> DecodedImage::shading_normals() const {
+    std::vector<float> result = grid_normals;
+    for (size_t i = 0; i < hard.triangles.size(); ++i)
+        std::copy_n(&hard.normals[size_t{3} * hard.triangles[i]], 3, &result[size_t{3} * grid_triangles[i]]);
+    return result;
 }
 
 GridMesh grid_mesh(const DecodedImage& image) {

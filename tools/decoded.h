@@ -20,6 +20,16 @@ struct ImagePlane {
     bool is_there() const { return columns > 0; }
 };
 
+// A mesh whose vertices on sharp edges are split, with the normals of both sides.
+struct HardMesh {
+    std::vector<float> positions;     // 3 each; first the fused vertices, then copies of those on sharp edges
+    std::vector<float> normals;       // 3 each
+    std::vector<float> texcoords;     // 2 each
+    std::vector<uint32_t> triangles;  // in the order of the fused ones
+
+    bool is_there() const { return !positions.empty(); }
+};
+
 // One level of one image. `grid` is the image itself. The mesh is the same surface with closed seams.
 struct DecodedImage {
     uint32_t columns = 0, rows = 0;
@@ -35,14 +45,17 @@ struct DecodedImage {
     ImagePlane normal_map;                 // object space, unit length
     ImagePlane colors;                     // sRGB, 0..1
     std::vector<uint32_t> triangles;       // index fused vertices; the order is that of grid_triangles
+    HardMesh hard;                         // empty if the file tells of no sharp edges
 
     bool is_defined(size_t sample) const { return grid[3 * sample] == grid[3 * sample]; }
     bool is_relative() const { return origin != std::array<double, 3>{}; }
     // The position of a fused vertex in object space.
-    std::array<double, 3> vertex(size_t v) const {
-        return {origin[0] + double{positions[3 * v]}, origin[1] + double{positions[3 * v + 1]},
-                origin[2] + double{positions[3 * v + 2]}};
+    std::array<double, 3> vertex(size_t v) const { return in_space(&positions[3 * v]); }
+    std::array<double, 3> in_space(const float* position) const {
+        return {origin[0] + double{position[0]}, origin[1] + double{position[1]}, origin[2] + double{position[2]}};
     }
+    // Normals of the samples of the grid. Those on sharp edges are those of their side.
+    std::vector<float> shading_normals() const;
 };
 
 // The grid's mesh without undefined samples.

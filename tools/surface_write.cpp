@@ -93,10 +93,26 @@ bool has_colors(std::span<const DecodedImage> images) {
     return std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.colors.is_there(); });
 }
 
-// Returns the colour of a fused vertex, at its first sample. White if the image has no colours.
-std::array<uint8_t, 3> vertex_color(const DecodedImage& image, size_t v) {
+// White if the image has no colours.
+std::array<uint8_t, 3> color_of(const DecodedImage& image, const float* texcoord) {
     if (!image.colors.is_there()) return {255, 255, 255};
-    return color_at(image.colors, image.texcoords[2 * v], image.texcoords[2 * v + 1]);
+    return color_at(image.colors, texcoord[0], texcoord[1]);
+}
+
+// Returns the colour of a fused vertex, at its first sample.
+std::array<uint8_t, 3> vertex_color(const DecodedImage& image, size_t v) {
+    return color_of(image, &image.texcoords[2 * v]);
+}
+
+// A mesh with one normal for each vertex.
+struct ShadedMesh {
+    std::span<const float> positions, normals, texcoords;
+    std::span<const uint32_t> triangles;
+};
+ShadedMesh shaded_mesh(const DecodedImage& image, bool fused) {
+    const HardMesh& hard = image.hard;
+    if (hard.is_there() && !fused) return {hard.positions, hard.normals, hard.texcoords, hard.triangles};
+    return {image.positions, image.normals, image.texcoords, image.triangles};
 }
 
 }  // namespace
@@ -115,11 +131,17 @@ std::optional<SurfaceFormat> surface_format_of(std::string_view extension) {
     return std::nullopt;
 }
 
-Bytes write_ply(std::span<const DecodedImage> images) {
+Bytes write_ply(std::span<const DecodedImage> images, bool fused) {
+    std::vector<ShadedMesh> meshes;
+    size_t vertices = 0;
+    for (const DecodedImage& image : images) {
+        meshes.push_back(shaded_mesh(image, fused));
+        vertices += meshes.back().positions.size() / 3;
+    }
     Bytes out;
-    out.reserve(400 + 24 * vertex_count(images) + 13 * triangle_count(images));
+    out.reserve(400 + 24 * vertices + 13 * triangle_count(images));
     append_text(out, "ply\nformat binary_little_endian 1.0\ncomment decoded by gim\nelement vertex ");
-    append_text(out, std::to_string(vertex_count(images)));
+    append_text(out, std::to_string(vertices));
     const bool relative = is_relative(images);
     append_text(out, relative ? "\nproperty double x\nproperty double y\nproperty double z\n"
                               : "\nproperty float x\nproperty float y\nproperty float z\n");
@@ -129,24 +151,25 @@ Bytes write_ply(std::span<const DecodedImage> images) {
     append_text(out, "element face ");
     append_text(out, std::to_string(triangle_count(images)));
     append_text(out, "\nproperty list uchar int vertex_indices\nend_header\n");
-    for (const DecodedImage& image : images) {
-        for (size_t v = 0; v < image.positions.size(); v += 3) {
+    for (size_t i = 0; i < images.size(); ++i) {
+        const ShadedMesh& mesh = meshes[i];
+        for (size_t v = 0; v < mesh.positions.size(); v += 3) {
             if (relative) {
-                append(out, image.vertex(v / 3));
+                append(out, images[i].in_space(&mesh.positions[v]));
             } else {
-                for (size_t k = 0; k < 3; ++k) append(out, image.positions[v + k]);
+                for (size_t k = 0; k < 3; ++k) append(out, mesh.positions[v + k]);
             }
-            for (size_t k = 0; k < 3; ++k) append(out, image.normals[v + k]);
-            if (colored) append(out, vertex_color(image, v / 3));
+            for (size_t k = 0; k < 3; ++k) append(out, mesh.normals[v + k]);
+            if (colored) append(out, color_of(images[i], &mesh.texcoords[v / 3 * 2]));
         }
     }
     uint32_t base = 0;
-    for (const DecodedImage& image : images) {
-        for (size_t t = 0; t < image.triangles.size(); t += 3) {
+    for (const ShadedMesh& mesh : meshes) {
+        for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
             out.push_back(3);
-            for (size_t k = 0; k < 3; ++k) append(out, base + image.triangles[t + k]);
+            for (size_t k = 0; k < 3; ++k) append(out, base + mesh.triangles[t + k]);
         }
-        base += static_cast<uint32_t>(image.positions.size() / 3);
+        base += static_cast<uint32_t>(mesh.positions.size() / 3);
     }
     return out;
 }
@@ -157,7 +180,8 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
     if (!material_file.empty()) append_text(out, "mtllib " + material_file + "\n");
     const bool colored = has_colors(images);
     size_t base = 1;       // OBJ counts from 1
-    size_t grid_base = 1;  // texture coordinates belong to samples, normals and positions to fused vertices
+    size_t grid_base = 1;  // texture coordinates belong to samples, positions to fused vertices
+    size_t normal_base = 1;
     for (size_t i = 0; i < images.size(); ++i) {
         const DecodedImage& image = images[i];
         append_text(out, "o image" + std::to_string(i) + "\n");
@@ -179,17 +203,19 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
                                              1.0F - texture_coordinate(t[1], image.colors.rows)};
             append_row(out, "vt", uv);
         }
-        for (size_t v = 0; v < image.normals.size(); v += 3) append_row(out, "vn", {&image.normals[v], 3});
+        const ShadedMesh shaded = shaded_mesh(image, false);
+        for (size_t v = 0; v < shaded.normals.size(); v += 3) append_row(out, "vn", shaded.normals.subspan(v, 3));
         for (size_t t = 0; t < image.triangles.size(); t += 3) {
             out.push_back('f');
             for (size_t k = 0; k < 3; ++k) {
                 append_number(out, base + image.triangles[t + k], ' ');
                 append_number(out, grid_base + grid.triangles[t + k], '/');
-                append_number(out, base + image.triangles[t + k], '/');
+                append_number(out, normal_base + shaded.triangles[t + k], '/');
             }
             out.push_back('\n');
         }
         base += image.positions.size() / 3;
+        normal_base += shaded.normals.size() / 3;
         grid_base += grid.samples.size();
     }
     return out;
@@ -257,7 +283,7 @@ std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage>
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images, const SurfaceOptions& options) {
     switch (format) {
         case SurfaceFormat::kPly:
-            return write_ply(images);
+            return write_ply(images, options.fused);
         case SurfaceFormat::kObj:
             return write_obj(images, options.material_file);
         case SurfaceFormat::kOff:

@@ -140,7 +140,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
         attributes["POSITION"] = buffer.add(positions, 3, "VEC3", kFloat, kArrayBuffer);
         add_bounds(buffer.accessors.back(), positions);
         attributes["NORMAL"] =
-            buffer.add(without_zeros(fused ? image.normals : at_samples(grid, image.grid_normals, 3)), 3, "VEC3",
+            buffer.add(without_zeros(fused ? image.normals : at_samples(grid, image.shading_normals(), 3)), 3, "VEC3",
                        kFloat, kArrayBuffer);
         if (!fused) add_planes(image, grid, buffer, attributes, material);
         // Images without textures share one material.

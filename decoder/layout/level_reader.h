@@ -38,6 +38,8 @@ struct SurfaceArrays {
     float* normals = nullptr;  // may be nullptr, as all below
     float* texcoords = nullptr;
     uint32_t* triangles = nullptr;
+    // Of a mesh: not nullptr if vertices shall be split at sharp edges. Receives their number if there are such edges.
+    uint32_t* hard_vertices = nullptr;
 };
 
 // Turns `count` triples from units into object space.

@@ -151,6 +151,7 @@ Status read_complex(const Header& header, std::span<const uint8_t> file, TileWor
     ws.complex.tiles = header.tiles.tiles;
     NoSource source;
     if (!code_tile_seams(coder, source, header.tiles, ws.quad_code, &ws.complex)) return Status::kMalformed;
+    if (header.tiles.has_sharp_edges) ws.is_sharp = ws.quad_code.fan;
     const bool as_told = ws.complex.vertices == header.tiles.vertices && ws.complex.edges == header.tiles.edges();
     return as_told && coder.intact() ? Status::kOk : Status::kMalformed;
 }

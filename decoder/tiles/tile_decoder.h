@@ -16,6 +16,7 @@ namespace gim {
 struct TileWorkspace {
     QuadComplex complex;
     QuadCodeWork quad_code;
+    const uint32_t* is_sharp = nullptr;  // per edge: 1 if it is sharp; nullptr if the file does not tell
     BandModels* models = nullptr;
     BandWork band_work;
     TileFlags* flags = nullptr;  // per tile
@@ -27,7 +28,8 @@ struct TileWorkspace {
 
 TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena);
 
-// Reads and checks how the tiles are glued. Fills ws.complex.
+// Reads and checks how the tiles are glued, and which edges are sharp. Fills ws.complex and ws.is_sharp. Of ws.quad_code,
+// `next` and `previous` are free then.
 Status read_complex(const Header& header, std::span<const uint8_t> file, TileWorkspace& ws);
 
 // Decodes a level: per tile (side+1)^2 triples in units, row by row. Samples of one surface point have equal bits.

@@ -5,6 +5,7 @@
 
 #include "decoder/pyramid/cells.h"
 #include "decoder/pyramid/vector3.h"
+#include "decoder/tiles/hard_vertices.h"
 
 namespace gim {
 
@@ -36,14 +37,14 @@ void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& w
 }
 
 template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const MeshNumbers&, uint32_t*);
+template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const HardVertices&, uint32_t*);
 template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const GridNumbers&, uint32_t*);
 
-void tile_normals(const TileSurface& surface, uint32_t* row, float* normals) {
+template <class Numbers>
+void tile_normals(const TileSurface& surface, const Numbers& numbers, uint32_t count, uint32_t* row, float* normals) {
     const uint32_t side = surface.side;
     const size_t width = 3 * (size_t{side} + 1);
-    const MeshNumbers numbers = {surface.numbers(), side};
-    const size_t count = 3 * size_t{surface.numbers().count()};
-    std::fill_n(normals, count, 0.0f);
+    std::fill_n(normals, 3 * size_t{count}, 0.0f);
     for (uint32_t t = 0; t < surface.complex.tiles; ++t) {
         const float* samples = surface.samples + 3 * t * surface.tile_size();
         for (uint32_t r = 0; r <= side; ++r) {
@@ -64,7 +65,10 @@ void tile_normals(const TileSurface& surface, uint32_t* row, float* normals) {
             }
         }
     }
-    for (size_t i = 0; i < count; i += 3) normalize(normals + i);
+    for (size_t i = 0; i < count; ++i) normalize(normals + 3 * i);
 }
+
+template void tile_normals(const TileSurface&, const MeshNumbers&, uint32_t, uint32_t*, float*);
+template void tile_normals(const TileSurface&, const HardVertices&, uint32_t, uint32_t*, float*);
 
 }  // namespace gim

@@ -78,8 +78,9 @@ template <class Numbers>
 void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& work, const Numbers& numbers,
                        uint32_t* triangles);
 
-// Sets the unit normals of all vertices: the cross products of differences within each tile, central ones or one-sided
-// at its border, summed over the tiles; zero if the sum is. row: side + 1 numbers, work space.
-void tile_normals(const TileSurface& surface, uint32_t* row, float* normals);
+// Sets the unit normals of `count` vertices: the cross products of differences within each tile, central ones or
+// one-sided at its border, summed over the tiles; zero if the sum is. row: side + 1 numbers, work space.
+template <class Numbers>
+void tile_normals(const TileSurface& surface, const Numbers& numbers, uint32_t count, uint32_t* row, float* normals);
 
 }  // namespace gim

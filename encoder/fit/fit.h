@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "encoder/image/geometry_image.h"
+#include "encoder/image/rails.h"
 #include "encoder/surface/mesh.h"
 #include "gim/encoder.h"
 
@@ -26,6 +27,7 @@ struct FitOptions {
     uint32_t rounds = 0;  // 0: as many as the strength needs; more come a little nearer to the optimum
     uint64_t seed = 1;
     uint32_t threads = 0;         // 0: all cores; the result does not depend on it
+    Rails rails = {};             // that samples stay on
     std::vector<bool> held = {};  // empty, or per sample: the sample does not move, and its faces are not compared
 };
 

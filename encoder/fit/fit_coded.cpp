@@ -172,11 +172,11 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
 }  // namespace
 
 struct CodedFit::Impl {
-    Impl(const GeometryImage& start, const Mesh& mesh, uint64_t first_seed)
+    Impl(const GeometryImage& start, const Mesh& mesh, uint64_t first_seed, const Rails& rails)
         : gluing(start.gluing),
           frame(mesh),
           reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
-          fitter(start.positions, reference, gluing, frame, {}),
+          fitter(start.positions, reference, gluing, frame, {.rails = rails}),
           first_positions(fitter.positions()),
           seed(first_seed) {}
 
@@ -246,13 +246,14 @@ CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
 CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+    : impl_(std::make_unique<Impl>(start, reference, seed, Rails{})) {
     impl_->codec = std::make_unique<SquareCodec>(start.width(), seams, impl_->gluing, impl_->reference, impl_->frame,
                                                  impl_->fitter.front());
 }
 
-CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, reference, seed)) {
+CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
+                   const Rails& rails)
+    : impl_(std::make_unique<Impl>(start, reference, seed, rails)) {
     impl_->codec = make_codec(impl_->frame);
 }
 

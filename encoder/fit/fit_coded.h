@@ -17,6 +17,7 @@
 #include "encoder/fit/fit.h"
 #include "encoder/fit/fit_codec.h"
 #include "encoder/image/geometry_image.h"
+#include "encoder/image/rails.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
 #include "format/seam.h"
@@ -33,8 +34,9 @@ class CodedFit {
     // For a square. Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their
     // details. `seed` decides where distances are sampled.
     CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
-    // For an image of any layout.
-    CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed);
+    // For an image of any layout. Samples stay on their rails.
+    CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
+             const Rails& rails = {});
     ~CodedFit();
     CodedFit(CodedFit&&) noexcept;
     CodedFit& operator=(CodedFit&&) noexcept;

@@ -103,10 +103,11 @@ Fitter::Fitter(const std::vector<Vec3>& start, const FitReference& reference, co
                const FitFrame& frame, const FitOptions& options)
     : gluing_(gluing),
       reference_(reference),
+      rails_(frame.into(options.rails)),
       x_(frame.into(start)),
       held_(options.held),
-      samples_(static_cast<double>(gluing.defined_count())),
-      face_hint_(2 * gluing.kind.size(), kNone) {
+      samples_(static_cast<double>(gluing_.defined_count())),
+      face_hint_(2 * gluing_.kind.size(), kNone) {
     if (held_.empty()) held_.assign(x_.size(), false);
     // Puts each class at one place, its mean. If one of its samples is held, all are.
     for (const auto& members : gluing_.shared) {

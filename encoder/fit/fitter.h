@@ -13,6 +13,7 @@
 
 #include "encoder/fit/fit.h"
 #include "encoder/fit/fit_system.h"
+#include "encoder/fit/rail_guide.h"
 #include "encoder/image/gluing.h"
 #include "encoder/surface/closest_point.h"
 #include "encoder/surface/mesh.h"
@@ -29,6 +30,10 @@ struct FitFrame {
         std::vector<Vec3> result(points.size());
         for (size_t k = 0; k < points.size(); ++k) result[k] = (points[k] - middle) * scale;
         return result;
+    }
+    Rails into(Rails rails) const {
+        for (std::vector<Vec3>& curve : rails.curves) curve = into(curve);
+        return rails;
     }
     Vec3 out_of(const Vec3& point) const { return point / scale + middle; }
 };
@@ -99,8 +104,9 @@ class Fitter {
 
     void add_membrane_edge(FitSystem& system, double lambda, uint32_t i, uint32_t j) const;
 
-    // Holds samples on the input's boundary to its curve. They may slide along it.
+    // Holds samples on the input's boundary to its curve, and those on rails to them. They may slide along.
     void add_boundary(FitSystem& system) const;
+    void add_rails(FitSystem& system) const;
 
     Vec3 moved(uint32_t v, const Vec3& step) const;
 
@@ -119,6 +125,7 @@ class Fitter {
 
     const GridGluing& gluing_;
     const FitReference& reference_;
+    RailGuide rails_;
     std::vector<Vec3> x_;
     std::vector<bool> held_, fixed_;
     std::vector<uint32_t> on_boundary_;

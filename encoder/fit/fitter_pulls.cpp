@@ -12,6 +12,7 @@ namespace gim {
 namespace {
 
 constexpr double kDamping = 0.001;  // mu
+constexpr double kGrip = 10;        // of boundaries and rails
 
 bool is_inside(const std::array<double, 3>& barycentric) {
     return barycentric[0] > 0 && barycentric[1] > 0 && barycentric[2] > 0;
@@ -59,6 +60,7 @@ FitSystem Fitter::linearise(double lambda, double density, uint64_t seed) {
     add_pulls(system, image, pulls_from_image(image, density, seed + 1));
     add_membrane(system, lambda);
     add_boundary(system);
+    add_rails(system);
     return system;
 }
 
@@ -160,13 +162,21 @@ void Fitter::add_membrane_edge(FitSystem& system, double lambda, uint32_t i, uin
 
 void Fitter::add_boundary(FitSystem& system) const {
     if (!has_curve_) return;
-    constexpr double kGrip = 10;
     for (const uint32_t v : on_boundary_) {
         const ClosestPoint at = reference_.curve_tree.find(x_[v]);
         const Triangle& edge = reference_.curve.triangles[at.triangle];
         const Vec3 along =
             direction_or(reference_.curve.positions[edge[1]] - reference_.curve.positions[edge[0]], Vec3::Zero());
         system.add_anchor(v, kGrip * (Eigen::Matrix3d::Identity() - along * along.transpose()), at.point - x_[v]);
+    }
+}
+
+void Fitter::add_rails(FitSystem& system) const {
+    for (uint32_t v = 0; v < x_.size(); ++v) {
+        if (!rails_.holds(v)) continue;
+        const Vec3 along = rails_.direction(v, x_[v]);
+        system.add_anchor(v, kGrip * (Eigen::Matrix3d::Identity() - along * along.transpose()),
+                          rails_.nearest(v, x_[v]) - x_[v]);
     }
 }
 

@@ -19,6 +19,7 @@ constexpr int kMostFreezings = 16;  // further passes of the guard, which drop s
 }  // namespace
 
 Vec3 Fitter::moved(uint32_t v, const Vec3& step) const {
+    if (rails_.holds(v) && !fixed_[v]) return rails_.nearest(v, x_[v] + step);
     if (!gluing_.on_input_boundary[v] || fixed_[v]) return x_[v] + step;
     return reference_.curve_tree.find(x_[v] + step).point;
 }

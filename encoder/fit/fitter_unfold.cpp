@@ -60,7 +60,7 @@ std::vector<uint32_t> Fitter::samples_around(const std::vector<uint32_t>& cells)
     }
     std::vector<uint32_t> samples;
     for (uint32_t v = 0; v < inside.size(); ++v) {
-        if (inside[v] && !fixed_[v] && !gluing_.on_input_boundary[v]) samples.push_back(v);
+        if (inside[v] && !fixed_[v] && !gluing_.on_input_boundary[v] && !rails_.holds(v)) samples.push_back(v);
     }
     return samples;
 }

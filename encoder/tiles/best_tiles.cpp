@@ -1,66 +1,92 @@
 #include "encoder/tiles/best_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <span>
 #include <utility>
-
-#include "encoder/code/rate_target.h"
 
 namespace gim {
 
 namespace {
 
-constexpr uint32_t kOthers[] = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
+constexpr std::array<uint32_t, 2> kOthers = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
+// Between creases, fewer tiles are enough.
+constexpr std::array<uint32_t, 3> kOthersWithCreases = {80, 55, 180};
 
-struct Estimated {
-    EncodeOptions options;
-    double log_bytes;
+class Trials {
+  public:
+    explicit Trials(const CodingRuns& runs) : runs_(runs) {}
+
+    void add(const EncodeOptions& options) {
+        const auto estimate = runs_.estimate(options, near_);
+        if (estimate.ok()) {
+            tried_.push_back({options, estimate.value()});
+            near_ = estimate.value().quantizer;
+        } else if (!first_error_) {
+            first_error_ = estimate.error();
+        }
+        std::stable_sort(tried_.begin(), tried_.end(), [](const TriedTiles& a, const TriedTiles& b) {
+            return a.estimate.log_bytes < b.estimate.log_bytes;
+        });
+    }
+    const std::vector<TriedTiles>& cheapest_first() const { return tried_; }
+    const std::optional<Error>& first_error() const { return first_error_; }
+
+  private:
+    const CodingRuns& runs_;
+    std::vector<TriedTiles> tried_;
+    std::optional<double> near_;
+    std::optional<Error> first_error_;
 };
 
-// Returns the variants whose images could be made, the cheapest first. first_error: of those that could not.
-std::vector<Estimated> estimate_all(const CodingRuns& runs, const std::vector<EncodeOptions>& variants,
-                                    std::optional<Error>& first_error) {
-    std::vector<Estimated> all;
-    std::optional<double> near;
-    for (const EncodeOptions& variant : variants) {
-        const auto estimate = runs.estimate(variant, near);
-        if (estimate.ok()) {
-            all.push_back({variant, estimate.value().log_bytes});
-            near = estimate.value().quantizer;
-        } else if (!first_error) {
-            first_error = estimate.error();
-        }
-    }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Estimated& a, const Estimated& b) { return a.log_bytes < b.log_bytes; });
-    return all;
+EncodeOptions usual(const EncodeOptions& given, bool has_creases) {
+    EncodeOptions options = given;
+    options.creases = given.creases && has_creases;
+    if (options.tiles == 0) options.tiles = kUsualTiles;
+    return options;
+}
+
+// Without a search: tiles keep creases if that leads to a file.
+Result<Encoded> code_once(const CodingRuns& runs, EncodeOptions options) {
+    auto encoded = runs.code(options, {});
+    if (encoded.ok() || !options.creases) return encoded;
+    options.creases = false;
+    auto without = runs.code(options, {});
+    return without.ok() ? std::move(without) : std::move(encoded);
 }
 
 }  // namespace
 
-std::vector<EncodeOptions> tile_variants(const EncodeOptions& options) {
-    if (options.tiles > 0) return {options};
-    std::vector<EncodeOptions> variants(1, options);
-    variants[0].tiles = kUsualTiles;
-    if (!is_searched(options.rate)) return variants;
-    for (const uint32_t tiles : kOthers) {
-        variants.push_back(options);
-        variants.back().tiles = tiles;
+Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
+    EncodeOptions options = usual(given, has_creases);
+    Trials trials(runs);
+    trials.add(options);
+    if (options.creases) {
+        options.creases = false;
+        trials.add(options);
     }
-    return variants;
+    if (trials.cheapest_first().empty()) return *trials.first_error();
+    if (given.tiles == 0) {
+        options.creases = trials.cheapest_first()[0].options.creases;
+        for (const uint32_t tiles : options.creases ? std::span<const uint32_t>(kOthersWithCreases) : kOthers) {
+            options.tiles = tiles;
+            trials.add(options);
+        }
+    }
+    return trials.cheapest_first();
 }
 
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, const StageClock& clock) {
-    const std::vector<EncodeOptions> variants = tile_variants(options);
-    if (variants.size() == 1) return runs.code(variants[0], {});
-    std::optional<Error> first_error;
-    const std::vector<Estimated> all = estimate_all(runs, variants, first_error);
-    if (all.empty()) return *first_error;
-    auto best = runs.code(all[0].options, {});
-    for (size_t k = 1; k < all.size(); ++k) {
-        const bool is_close = all[k].log_bytes < all[0].log_bytes + RateSearchValues::kEstimateNoise;
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
+                              const StageClock& clock) {
+    if (!is_searched(options.rate)) return code_once(runs, usual(options, has_creases));
+    GIM_TRY(tried, try_tiles(runs, options, has_creases));
+    auto best = runs.code(tried[0].options, {});
+    for (size_t k = 1; k < tried.size(); ++k) {
+        const double least = tried[0].estimate.log_bytes;
+        const bool is_close = tried[k].estimate.log_bytes < least + RateSearchValues::kEstimateNoise;
         if (best.ok() && !is_close) continue;
-        auto other = runs.code(all[k].options, contest_with(best));
+        auto other = runs.code(tried[k].options, contest_with(best));
         if (improves(other, best, options.rate)) best = std::move(other);
     }
     if (best.ok()) {

@@ -1,22 +1,31 @@
-// Chooses the number of tiles: codes several and keeps the best file.
+// Chooses the number of tiles, and whether they keep the surface's creases: codes several and keeps the best file.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "encoder/base/stage_clock.h"
+#include "encoder/code/rate_target.h"
 #include "encoder/layout/encode_once.h"
 
 namespace gim {
 
 inline constexpr uint32_t kUsualTiles = 120;
 
-// The options, once for each number of tiles that best_of_tiles() tries: several if they leave the number open and the
-// target is searched for.
-std::vector<EncodeOptions> tile_variants(const EncodeOptions& options);
+struct TriedTiles {
+    EncodeOptions options;
+    Estimate estimate;
+};
 
-// Estimates what each number costs. Codes the cheapest, and those that cost almost the same; one that is sure to lose ends
-// early (contest.h). Returns the best file. The times are those of all runs.
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, const StageClock& clock);
+// Estimates what tiles cost: with creases and without, if the surface has any, then in several numbers if the options leave
+// the number open. Returns those whose images could be made, the cheapest first, or the first error. Only for targets that
+// are searched for.
+Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
+
+// If the target is searched for, codes the cheapest of try_tiles(), and those that cost almost the same; one that is sure
+// to lose ends early (contest.h). Else tiles keep creases if that leads to a file. Returns the best file. The times are
+// those of all runs.
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
+                              const StageClock& clock);
 
 }  // namespace gim

@@ -10,7 +10,10 @@
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/density.h"
 #include "encoder/surface/closest_point.h"
+#include "encoder/surface/sharp_edges.h"
 #include "encoder/surface/stretch.h"
+#include "encoder/tiles/code_complex.h"
+#include "encoder/tiles/crease_rails.h"
 #include "encoder/tiles/locate_samples.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/split_chords.h"
@@ -61,12 +64,32 @@ Result<MappedBase> find_base(const TileableSurface& surface, uint32_t tiles, con
 struct Sampled {
     TileImage tiles;
     GeometryImage atlas;
+    Rails rails;  // of the atlas
 };
-Result<Sampled> sample(const Mesh& dense, const TileMap& map, uint32_t exponent) {
-    GIM_TRY(points, locate_samples(map, 1u << exponent));
-    Sampled sampled{sample_tiles(dense.positions, map, points, exponent), {}};
-    GIM_TRY(atlas, atlas_of(sampled.tiles));
+
+// The same rails for the samples of the atlas.
+Result<Rails> rails_of_atlas(const TileImage& tiles, Rails rails) {
+    if (rails.of_sample.empty()) return rails;
+    GIM_TRY(sample_at, samples_of_atlas(tiles));
+    const std::vector<uint32_t> curve_of = std::move(rails.of_sample);
+    rails.of_sample.clear();
+    for (const uint32_t s : sample_at) rails.of_sample.push_back(s == kNone ? kNone : curve_of[s]);
+    return rails;
+}
+
+Result<Sampled> sample(const TileInput& input, const TileMap& map, uint32_t exponent) {
+    const uint32_t side = 1u << exponent;
+    GIM_TRY(points, locate_samples(map, side));
+    Sampled sampled{sample_tiles(input.mesh.positions, map, points, exponent), {}, {}};
+    TileImage& tiles = sampled.tiles;
+    GIM_TRY(complex, complex_of(tiles.quads, tiles.vertices));
+    CreaseRails creases = crease_rails(input.mesh, input.sharp, map, points, complex.view(), side);
+    tiles.is_sharp = std::find(creases.half_edge.begin(), creases.half_edge.end(), true) != creases.half_edge.end();
+    if (tiles.is_sharp) tiles.sharp = std::move(creases.half_edge);
+    GIM_TRY(atlas, atlas_of(tiles));
+    GIM_TRY(rails, rails_of_atlas(tiles, std::move(creases.rails)));
     sampled.atlas = std::move(atlas);
+    sampled.rails = std::move(rails);
     return sampled;
 }
 
@@ -92,11 +115,25 @@ std::vector<double> importance_from(const Mesh& dense, const TileMap& map, const
 
 }  // namespace
 
-TileableSurface make_tileable(const Mesh& mesh) {
-    TileInput input = make_room_for_tiles(mesh, {});
+TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases) {
+    TileInput input = make_room_for_tiles(mesh, creases);
     split_chords(input.mesh, input.sharp);
     BaseHierarchy hierarchy(input.mesh, input.sharp);
     return {std::move(input), std::move(hierarchy)};
+}
+
+const std::vector<bool>& TileableSurfaces::creases() {
+    if (!creases_) creases_ = sharp_edges(mesh_);
+    return *creases_;
+}
+
+bool TileableSurfaces::has_creases() { return std::find(creases().begin(), creases().end(), true) != creases().end(); }
+
+const TileableSurface& TileableSurfaces::of(bool with_creases) {
+    const bool creased = with_creases && has_creases();
+    std::optional<TileableSurface>& surface = creased ? creased_ : smooth_;
+    if (!surface) surface = make_tileable(mesh_, creased ? creases() : std::vector<bool>());
+    return *surface;
 }
 
 Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, const EncodeOptions& options,
@@ -112,20 +149,22 @@ Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, c
 
     const uint32_t exponent = exponent_within(static_cast<uint32_t>(map.quads.size()), options.samples);
     if (options.density) {
-        GIM_TRY(first, sample(dense, map, exponent));
+        GIM_TRY(first, sample(surface.input, map, exponent));
         map_options.importance = importance_from(dense, map, first.atlas, lossless);
         GIM_TRY(adapted, map_tiles(dense, tiles.base, tiles.pairing.quads, map_options, clock.progress()));
         map = std::move(adapted);
     }
 
     clock.begin(Stage::kSample);
-    GIM_TRY(sampled, sample(dense, map, exponent));
+    GIM_TRY(sampled, sample(surface.input, map, exponent));
     made.tiles = std::move(sampled.tiles);
     made.atlas = std::move(sampled.atlas);
-    const std::optional<FitOptions> fit_options = first_fit(options);
+    made.rails = std::move(sampled.rails);
+    std::optional<FitOptions> fit_options = first_fit(options);
     if (!fit_options) return made;
 
     clock.begin(Stage::kFit);
+    fit_options->rails = made.rails;
     GIM_TRY(fitted, fit(made.atlas, mesh, *fit_options, clock.progress()));
     made.folds_before_fit = fitted.before.folds;
     made.atlas.positions = std::move(fitted.positions);

@@ -2,9 +2,13 @@
 // Maximo, Velho, Siqueira. Adaptive Multi-Chart and Multiresolution Mesh Representation. 2013. Section 4.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
 #include "encoder/image/geometry_image.h"
+#include "encoder/image/rails.h"
 #include "encoder/surface/mesh.h"
 #include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_image.h"
@@ -17,12 +21,30 @@ struct TileableSurface {
     TileInput input;
     BaseHierarchy hierarchy;
 };
-// mesh: clean. O(F log F).
-TileableSurface make_tileable(const Mesh& mesh);
+// mesh: clean. creases: per half-edge 3f+i whether its edge is one that tiles keep; empty: none is. O(F log F).
+TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases);
+
+// A surface for all runs, with its creases and without. Each is made when it is asked for first.
+class TileableSurfaces {
+  public:
+    // Keeps a reference to the mesh.
+    explicit TileableSurfaces(const Mesh& mesh) : mesh_(mesh) {}
+
+    bool has_creases();
+    const TileableSurface& of(bool with_creases);
+
+  private:
+    const std::vector<bool>& creases();
+
+    const Mesh& mesh_;
+    std::optional<std::vector<bool>> creases_;
+    std::optional<TileableSurface> creased_, smooth_;
+};
 
 struct MadeTiles {
     TileImage tiles;
     GeometryImage atlas;  // of the tiles, as atlas_of() lays them out
+    Rails rails;          // of the atlas: creases on borders of tiles
     double stretch_efficiency = 0;
     uint64_t folds_before_fit = 0;
 };

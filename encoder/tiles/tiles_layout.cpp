@@ -29,7 +29,7 @@ class TilesLayout final : public LayoutImages {
             made = codec.error();
             return nullptr;
         };
-        fit_.emplace(made_.atlas, make, mesh, seed);
+        fit_.emplace(made_.atlas, make, mesh, seed, made_.rails);
         return made;
     }
 

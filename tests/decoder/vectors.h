@@ -42,6 +42,19 @@ inline gim_status decode_one(const gim_info& info, const std::vector<uint8_t>& f
         s = gim_decode_mesh(&info, file.data(), file.size(), image, level, positions.data(), normals.data(),
                             texcoords.data(), triangles.data(), scratch.data(), scratch.size());
     if (s != GIM_OK) return s;
+    // The split mesh has the same triangles in space.
+    std::vector<float> hard_positions(grid_size * 3), hard_normals(grid_size * 3), hard_texcoords(grid_size * 2);
+    std::vector<uint32_t> hard_triangles(triangles.size());
+    uint32_t hard_count = 0;
+    s = gim_decode_hard_mesh(&info, file.data(), file.size(), image, level, &hard_count, hard_positions.data(),
+                             hard_normals.data(), hard_texcoords.data(), hard_triangles.data(), scratch.data(),
+                             scratch.size());
+    if (s != GIM_OK || hard_count < vertex_count || hard_count > grid_size) return s != GIM_OK ? s : GIM_BAD_ARGUMENT;
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        if (hard_triangles[i] >= hard_count ||
+            std::memcmp(&hard_positions[3 * size_t{hard_triangles[i]}], &positions[3 * size_t{triangles[i]}], 12) != 0)
+            return GIM_BAD_ARGUMENT;
+    }
     out->samples.insert(out->samples.end(), samples.begin(), samples.end());
     out->triangles.insert(out->triangles.end(), triangles.begin(), triangles.end());
     out->vertices.insert(out->vertices.end(), normals.begin(), normals.end());

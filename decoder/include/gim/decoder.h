@@ -141,6 +141,16 @@ GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size
                                    float* positions, float* normals, float* texcoords, uint32_t* triangles,
                                    void* scratch, size_t scratch_size);
 
+/* Decodes the same level into a mesh that shades as the surface is meant to: vertices on sharp edges are split, and each
+ * of them has the normal of its side. GIM_LAYOUT_TILES, if the file says which edges are sharp; else gim_decode_mesh.
+ * The first vertices are those of gim_decode_mesh. Copies of those on sharp edges follow, with equal positions and with
+ * texcoords of their own. Triangles come in the same order.
+ * vertex_count  receives the number of vertices. All outputs must have room for width*height vertices; there are no more
+ * The rest is as in gim_decode_mesh. */
+GIM_API gim_status gim_decode_hard_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                        uint32_t level, uint32_t* vertex_count, float* positions, float* normals,
+                                        float* texcoords, uint32_t* triangles, void* scratch, size_t scratch_size);
+
 /* Decodes the same level into a grid mesh, for texturing. Its vertices are the width*height samples, row by row;
  * samples of one surface point have equal positions and normals, and texcoords of their own. Undefined
  * samples are in no triangle; their positions are NaN, their normals and texcoords 0. triangles index samples.

@@ -109,6 +109,15 @@ class Decoder {
     gim_status mesh(const DecoderLevel& level, const SurfaceSpans& out) noexcept {
         return decode(gim_decode_mesh, level, level.vertex_count, out);
     }
+    // n of the spans is width * height; *vertex_count receives how many of them are used.
+    gim_status hard_mesh(const DecoderLevel& level, std::uint32_t* vertex_count, const SurfaceSpans& out) noexcept {
+        const auto function = [vertex_count](const gim_info* info, const void* bytes, std::size_t size,
+                                             std::uint32_t image, std::uint32_t at_level, float* positions,
+                                             auto... others) {
+            return gim_decode_hard_mesh(info, bytes, size, image, at_level, vertex_count, positions, others...);
+        };
+        return decode(function, level, std::uint64_t{level.width} * level.height, out);
+    }
     gim_status grid(const DecoderLevel& level, const SurfaceSpans& out) noexcept {
         return decode(gim_decode_grid, level, std::uint64_t{level.width} * level.height, out);
     }

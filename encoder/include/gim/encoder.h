@@ -213,6 +213,9 @@ struct EncodeOptions {
     uint32_t charts = 0;
     // kTiles: wanted number of tiles; 0: chosen by the encoder. More are made if topology needs them.
     uint32_t tiles = 0;
+    // kTiles: sharp edges of the surface become borders of tiles, unless the target is searched for and the file is smaller
+    // without.
+    bool creases = true;
     // kGim: side of the grid on which cut-nodes lie; more than `side` counts as `side`. All levels down to this side are
     // closed. The encoder takes a finer grid if the cut does not fit whole units of this one.
     uint32_t node_side = 17;
