@@ -52,7 +52,8 @@ class Locator {
         for (double row = std::ceil(low.y() - reach); row <= high.y() + reach; ++row) {
             for (double column = std::ceil(low.x() - reach); column <= high.x() + reach; ++column) {
                 const Vec2 p(column, row);
-                const ClosestPoint closest = closest_point_on_triangle(in_space(p), in_space(a), in_space(b), in_space(c));
+                const ClosestPoint closest =
+                    closest_point_on_triangle(in_space(p), in_space(a), in_space(b), in_space(c));
                 const uint32_t sample = sample_at(triangle, (a + b + c) / (3 * n), p / n);
                 const double distance = (closest.point - in_space(p)).norm();
                 if (sample == kNone || distance > reach || distance >= far_[sample]) continue;

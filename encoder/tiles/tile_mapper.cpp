@@ -23,7 +23,12 @@ void unify(std::vector<uint32_t>& list) {
 
 TileMapper::TileMapper(FlatMesh& mesh, const std::vector<VertexKind>& kinds, FaceMetrics metrics,
                        std::vector<Freedom> freedom, std::vector<Quad>& quads)
-    : mesh_(mesh), kinds_(kinds), metrics_(metrics), freedom_(std::move(freedom)), side_(freedom_.size(), kNone), quads_(quads) {
+    : mesh_(mesh),
+      kinds_(kinds),
+      metrics_(metrics),
+      freedom_(std::move(freedom)),
+      side_(freedom_.size(), kNone),
+      quads_(quads) {
     for (uint32_t f = 0; f < mesh_.face_count(); ++f) metric_.push_back(metrics_.of(mesh_.triangle(f)));
 }
 
@@ -85,8 +90,8 @@ StarDescent TileMapper::relax(uint32_t v, int steps) {
 bool TileMapper::insert_with_help(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
     if (insert(collapse, ring)) return true;
     const uint32_t w = collapse.into;
-    return mesh_.present(w) &&
-           (insert_after_bend(collapse, ring) || (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring)));
+    return mesh_.present(w) && (insert_after_bend(collapse, ring) ||
+                                (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring)));
 }
 
 // Two faces at a vertex of a boundary cannot fill its tiles if these make a full turn. So a neighbour on the boundary
@@ -226,8 +231,7 @@ std::vector<TileMapper::Neighbour> TileMapper::neighbours_on_side(const std::vec
     for (const Spoke& spoke : star) {
         const uint32_t h = spoke.half_edge, first = next(h), last = prev(h);
         if (mesh_.is_side(h)) neighbours.push_back({mesh_.origin(first), spoke.p1, first, spoke.quarters});
-        if (mesh_.twin(last) == kNone)
-            neighbours.push_back({mesh_.origin(last), spoke.p2, last, spoke.quarters});
+        if (mesh_.twin(last) == kNone) neighbours.push_back({mesh_.origin(last), spoke.p2, last, spoke.quarters});
     }
     return neighbours;
 }

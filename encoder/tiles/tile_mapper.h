@@ -24,8 +24,8 @@ enum class Freedom : uint8_t {
 class TileMapper {
   public:
     // mesh, kinds and quads must outlive this. freedom: per vertex. The corners of the quads are pinned.
-    TileMapper(FlatMesh& mesh, const std::vector<VertexKind>& kinds, FaceMetrics metrics,
-                       std::vector<Freedom> freedom, std::vector<Quad>& quads);
+    TileMapper(FlatMesh& mesh, const std::vector<VertexKind>& kinds, FaceMetrics metrics, std::vector<Freedom> freedom,
+               std::vector<Quad>& quads);
 
     // Makes one pass over all vertices. Returns the energy gained, as a part of the energy that is left.
     double sweep();
