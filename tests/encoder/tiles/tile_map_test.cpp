@@ -102,10 +102,12 @@ TEST(TileMap, CreasesLieOnBordersOfTiles) {
     }
 }
 
+// Corners that stay at the base vertices give .84 and .40.
 TEST(TileMap, CornersOfTilesMoveToWhereTheStretchIsLess) {
-    const MappedMesh made = mapped(clean(corpus::limbed_blob(24)).value().mesh, kTiles);
-    EXPECT_GT(stretch_efficiency(made.input.mesh.positions, made.map), 0.6);
-    EXPECT_GT(made.map.swapped, kTiles / 2);
+    const MappedMesh ball = mapped(clean(corpus::sphere(30)).value().mesh, kTiles);
+    EXPECT_GT(stretch_efficiency(ball.input.mesh.positions, ball.map), 0.9);
+    const MappedMesh limbs = mapped(clean(corpus::limbed_blob(24)).value().mesh, 2 * kTiles);
+    EXPECT_GT(stretch_efficiency(limbs.input.mesh.positions, limbs.map), 0.55);
 }
 
 TEST(TileMap, CornersOfTilesAreVertices) {
