@@ -8,6 +8,8 @@ namespace gim {
 
 namespace {
 
+// A hub of more faces stays. To try all its neighbours takes time that grows with the square of their number.
+constexpr size_t kMostSuccessors = 16;
 constexpr int kSettlePasses = 2;  // around a corner that moves, before its energy is compared
 // Part of the room that a stray vertex takes in a step. A step of descent gives a third more room, so it must be less.
 constexpr double kApproach = 0.2;
@@ -405,9 +407,11 @@ std::vector<uint32_t> TileMapper::successors_of(uint32_t w) {
 // Lets the neighbour of a corner that lowers the energy most take its place.
 bool TileMapper::move_corner(uint32_t w) {
     if (sides_at(w) != 0) return false;
+    const std::vector<uint32_t> successors = successors_of(w);
+    if (successors.size() > kMostSuccessors) return false;
     double most = 0;
     uint32_t best = kNone;
-    for (const uint32_t v : successors_of(w)) {
+    for (const uint32_t v : successors) {
         const Patch patch = patch_around(v, w);
         const double before = energy_of(patch);
         if (exchange(v, w)) {
