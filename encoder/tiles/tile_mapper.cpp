@@ -94,8 +94,7 @@ bool TileMapper::insert_with_help(const HalfEdgeCollapse& collapse, const std::v
     const uint32_t w = collapse.into;
     if (!mesh_.split(collapse, kinds_[collapse.vertex] != VertexKind::kSmooth, ring)) return false;
     mesh_.unsplit();  // only a place is missing
-    return insert_after_bend(collapse, ring) ||
-           (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring));
+    return insert_after_bend(collapse, ring) || (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring));
 }
 
 // Two faces at a vertex of a boundary cannot fill its tiles if these make a full turn. So a neighbour on the boundary
