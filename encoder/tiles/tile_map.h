@@ -5,7 +5,9 @@
 // while the mesh is coarsened. The map is made from coarse to fine, as on the square (squares/parametrize.h; Sander,
 // Gortler, Snyder, Hoppe 2002), on the flat surface with cones that the tiles are (flat_mesh.h). Each vertex that comes
 // back gets a place inside its star, so no triangle is ever flipped, and the borders of tiles move over the surface like
-// everything else. Only the corners of tiles are vertices of the surface, and creases and boundaries stay on borders.
+// everything else. The corners of tiles are vertices of the surface. They move from vertex to vertex, except on creases
+// and boundaries. These lie on borders. A vertex without room on its border waits beside it, in a fringe beyond the
+// boundaries too (TileWalker::with_fringe), until finer faces make room.
 #pragma once
 
 #include <array>
@@ -39,7 +41,7 @@ struct TilePlace {
 // A triangle of the surface in the plane. The unit square is the tile, and contains the centroid.
 struct TileTriangle {
     std::array<Vec2, 3> corners;
-    uint32_t tile = 0;
+    uint32_t tile = 0;  // numbers from the count of tiles on are the fringe
 };
 
 struct TileMap {
@@ -48,7 +50,7 @@ struct TileMap {
     std::vector<TileTriangle> placed;  // per triangle: counter-clockwise; edges are as long as on the other side
     std::vector<TilePlace> places;     // per vertex; of several tiles that share it, any one
     std::vector<uint32_t> left_out;    // vertices without a place: the triangles do without them
-    size_t stray = 0;                  // vertices of creases that lie beside the borders of their tiles
+    size_t stray = 0;                  // vertices of creases and boundaries that lie beside the borders of their tiles
     uint32_t swapped = 0;              // vertices that took a base vertex's place at the corners of tiles
 };
 

@@ -8,6 +8,8 @@ namespace gim {
 
 namespace {
 
+// A hub of more faces stays. To try all its neighbours takes time that grows with the square of their number.
+constexpr size_t kMostSuccessors = 16;
 constexpr int kSettlePasses = 2;  // around a corner that moves, before its energy is compared
 // Part of the room that a stray vertex takes in a step. A step of descent gives a third more room, so it must be less.
 constexpr double kApproach = 0.2;
@@ -90,8 +92,9 @@ StarDescent TileMapper::relax(uint32_t v, int steps) {
 bool TileMapper::insert_with_help(const HalfEdgeCollapse& collapse, const std::vector<uint32_t>& ring) {
     if (insert(collapse, ring)) return true;
     const uint32_t w = collapse.into;
-    return mesh_.present(w) && (insert_after_bend(collapse, ring) ||
-                                (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring)));
+    if (!mesh_.split(collapse, kinds_[collapse.vertex] != VertexKind::kSmooth, ring)) return false;
+    mesh_.unsplit();  // only a place is missing
+    return insert_after_bend(collapse, ring) || (freedom_[w] == Freedom::kPinned && insert_after_move(collapse, ring));
 }
 
 // Two faces at a vertex of a boundary cannot fill its tiles if these make a full turn. So a neighbour on the boundary
@@ -403,9 +406,11 @@ std::vector<uint32_t> TileMapper::successors_of(uint32_t w) {
 // Lets the neighbour of a corner that lowers the energy most take its place.
 bool TileMapper::move_corner(uint32_t w) {
     if (sides_at(w) != 0) return false;
+    const std::vector<uint32_t> successors = successors_of(w);
+    if (successors.size() > kMostSuccessors) return false;
     double most = 0;
     uint32_t best = kNone;
-    for (const uint32_t v : successors_of(w)) {
+    for (const uint32_t v : successors) {
         const Patch patch = patch_around(v, w);
         const double before = energy_of(patch);
         if (exchange(v, w)) {

@@ -51,5 +51,28 @@ TEST(TileWalk, RefusesAWayOffTheSurface) {
     EXPECT_TRUE(walker.walk(0, {0.5, 0.5}, {1, 0.5}));
 }
 
+TEST(TileWalk, TheFringeContinuesTheTilesBeyondBoundaries) {
+    // Two tiles side by side: a boundary of six sides.
+    const auto made = complex_of({{0, 1, 2, 3}, {1, 4, 5, 2}}, 6);
+    const TileWalker walker = TileWalker::with_fringe(made.value().view());
+    EXPECT_EQ(walker.complex_tiles(), 2u);
+    const Vec2 from(0.75, 0.5), beyond(0.75, -0.25), beside(1.5, -0.25);
+    const auto out = walker.walk(0, from, beyond);
+    ASSERT_TRUE(out);
+    EXPECT_GE(out->tile, 2u);
+    const auto back = walker.walk(out->tile, (*out)(beyond), (*out)(from));
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->tile, 0u);
+    EXPECT_EQ((*back)((*out)(from)), from);
+    // Neighbours in the fringe are glued as the tiles that they continue.
+    const auto along = walker.walk(out->tile, (*out)(beyond), (*out)(beside));
+    const auto across = walker.walk(0, from, {1.5, 0.5});
+    ASSERT_TRUE(along && across);
+    const auto down = walker.walk(across->tile, (*across)(Vec2(1.5, 0.5)), (*across)(beside));
+    ASSERT_TRUE(down);
+    EXPECT_EQ(along->tile, down->tile);
+    EXPECT_EQ((*along)((*out)(beside)), (*down)((*across)(beside)));
+}
+
 }  // namespace
 }  // namespace gim
