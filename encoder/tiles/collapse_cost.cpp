@@ -135,9 +135,12 @@ bool CollapseCost::features_allow(size_t onto, Rules rules) const {
     }
     if (features != 0 && features != 2 && !(features == 1 && rules >= Rules::kLooseShape) && rules < Rules::kTopology)
         return false;
-    for (size_t i = 0; i < spokes_.size(); ++i) {
+    for (size_t i = 0; i < spokes_.size() && rules < Rules::kTopology; ++i) {
+        if (i == onto || !joins(i, onto) || !spokes_[i].feature) continue;
         // A face between two features of the vertex would lie on the straight line that they become.
-        if (i != onto && joins(i, onto) && spokes_[i].feature && (!closed_ || features == 2)) return false;
+        if (rules == Rules::kAll) return false;
+        const bool rim = (i < face_count() && after(i) == onto) ? spokes_[i].rim_feature : spokes_[onto].rim_feature;
+        if (rim) return false;  // two features would become one
     }
     if (rules >= Rules::kTopology) return true;
     for (size_t i = 0; i < face_count(); ++i) {

@@ -39,26 +39,31 @@ struct MappedBase {
 // Vertices that the map may leave out, one of so many. A vertex without a place takes those with it that came from it, so
 // a base that is too coarse for its handles loses most of them, and others hardly any.
 constexpr size_t kLeftOutOf = 1000;
+// Bases of which the map is tried. Each has a quarter more tiles than the one before.
+constexpr int kMostMaps = 8;
 
-// Makes a base of about so many tiles, or the first larger one that pairs and maps.
+// Makes a base of about so many tiles, or a larger one if that does not pair or leaves too many vertices out.
 Result<MappedBase> find_base(const TileableSurface& surface, uint32_t tiles, const TileMapOptions& options,
                              StageClock& clock) {
     const Mesh& dense = surface.input.mesh;
-    for (size_t wanted = tiles;; wanted += wanted / 4 + 1) {
+    std::optional<MappedBase> best;
+    int maps = 0;
+    for (size_t wanted = tiles; maps < kMostMaps; wanted += wanted / 4 + 1) {
         clock.begin(Stage::kCut);
         TileBase base = make_tile_base(surface.input, surface.hierarchy, static_cast<uint32_t>(2 * wanted));
         const bool finest = base.base.triangles.size() == dense.triangles.size();
         wanted = std::max(wanted, base.base.triangles.size() / 2);
-        if (!base.pairing.unpaired.empty()) {
-            if (!finest) continue;
-            return Error{Stage::kCut, std::to_string(base.pairing.unpaired.size()) +
-                                          " triangles of the base mesh do not pair into tiles; take another layout"};
+        if (base.pairing.unpaired.empty()) {
+            clock.begin(Stage::kParametrize);
+            GIM_TRY(map, map_tiles(dense, base.base, base.pairing.quads, options, clock.progress()));
+            ++maps;
+            if (!best || map.left_out.size() < best->map.left_out.size()) best = {std::move(base), std::move(map)};
+            if (best->map.left_out.size() <= dense.positions.size() / kLeftOutOf) break;
         }
-        clock.begin(Stage::kParametrize);
-        GIM_TRY(map, map_tiles(dense, base.base, base.pairing.quads, options, clock.progress()));
-        if (finest || map.left_out.size() <= dense.positions.size() / kLeftOutOf)
-            return MappedBase{std::move(base), std::move(map)};
+        if (finest) break;
     }
+    if (best) return std::move(*best);
+    return Error{Stage::kCut, "no base mesh of this surface pairs into tiles; take another layout"};
 }
 
 struct Sampled {

@@ -10,9 +10,9 @@ namespace gim {
 
 namespace {
 
-// Faces of a component at the fine cut, against those at the wanted one. Flat faces between creases lose their inner
-// vertices early, and those decide how they can be paired.
-constexpr uint32_t kFineFactor = 2, kFineFaces = 24, kFineFactorWithCreases = 5, kFineFacesWithCreases = 100;
+// Faces of a component at the fine cut, against those at the wanted one. Flat faces between creases and boundaries lose
+// their inner vertices early, and those decide how they can be paired.
+constexpr uint32_t kFineFactor = 2, kFineFaces = 24, kFineFactorWithLines = 5, kFineFacesWithLines = 100;
 
 // The collapses of all components, and where the fine cut through each is.
 class FineCut {
@@ -69,7 +69,12 @@ FineCut::FineCut(const TileInput& input, const BaseHierarchy& hierarchy, uint32_
 void FineCut::choose_cuts(uint32_t count) {
     std::vector<uint32_t> faces(lists_.size(), 0);
     for (const uint32_t c : components_.of_face) ++faces[c];
-    const bool creases = std::find(input_.sharp.begin(), input_.sharp.end(), true) != input_.sharp.end();
+    std::vector<bool> lines(lists_.size(), false);
+    const Topology topology = build_topology(input_.mesh);
+    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+        if (topology.twin[h] == kNone || (!input_.sharp.empty() && input_.sharp[h]))
+            lines[components_.of_face[face_of(h)]] = true;
+    }
     const auto gone = [&](uint32_t collapse) {
         const HalfEdgeCollapse& c = hierarchy_.collapses()[collapse];
         return uint32_t{c.left != kNone} + uint32_t{c.right != kNone};
@@ -80,7 +85,7 @@ void FineCut::choose_cuts(uint32_t count) {
         wanted_.push_back(at);
         for (size_t i = 0; i < at; ++i) faces[c] -= gone(list[i]);
         const uint32_t fine =
-            creases ? kFineFactorWithCreases * faces[c] + kFineFacesWithCreases : kFineFactor * faces[c] + kFineFaces;
+            lines[c] ? kFineFactorWithLines * faces[c] + kFineFacesWithLines : kFineFactor * faces[c] + kFineFaces;
         while (at > 0 && faces[c] < fine) faces[c] += gone(list[--at]);
         fine_.push_back(at);
     }
