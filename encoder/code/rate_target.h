@@ -32,8 +32,6 @@ struct RateSearchValues {
     // Searches on one side of the square that compete with other sides (contest.h). By how much of the rival's bytes a
     // file may seem larger, after a quick fit and after a full one. Quick fits take 5 to 10 % more bytes.
     static constexpr double kQuickExcess = 0.15, kFinalExcess = 0.04;
-    // Brief fits may rank images wrongly whose bytes differ by less than this share.
-    static constexpr double kEstimateNoise = 0.05;
     // Where finer quantizers gain so little and so much is missing, the samples are too few. Slope: of 1; room: octaves.
     static constexpr double kHopelessSlope = 0.35, kHopelessRoom = 0.1;
 

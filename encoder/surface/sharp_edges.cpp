@@ -138,21 +138,30 @@ bool SharpEdges::continues(uint32_t h, uint32_t vertex) const {
 }
 
 void SharpEdges::continue_lines() {
-    std::vector<uint32_t> candidates;
+    struct Candidate {
+        uint32_t half_edge;
+        bool is_gap;  // counts if the line goes on at both ends
+    };
+    std::vector<Candidate> candidates;
     for (uint32_t h = 0; h < angle_.size(); ++h) {
-        if (is_owner(h) && !sharp_[h] && angle_[h] >= kStillSharp &&
-            stands_out(h, angle_[h] >= kSharp ? kBesideGap : kBeside))
-            candidates.push_back(h);
+        if (!is_owner(h) || sharp_[h] || angle_[h] < kStillSharp) continue;
+        if (stands_out(h, kBeside)) {
+            candidates.push_back({h, false});
+        } else if (angle_[h] >= kSharp && stands_out(h, kBesideGap)) {
+            candidates.push_back({h, true});
+        }
     }
     for (bool found = true; found;) {
         found = false;
-        std::vector<uint32_t> still;
-        for (const uint32_t h : candidates) {
-            if (continues(h, from(mesh_, h)) || continues(h, to(mesh_, h))) {
-                mark(h);
+        std::vector<Candidate> still;
+        for (const Candidate& c : candidates) {
+            const int ends =
+                continues(c.half_edge, from(mesh_, c.half_edge)) + continues(c.half_edge, to(mesh_, c.half_edge));
+            if (ends >= (c.is_gap ? 2 : 1)) {
+                mark(c.half_edge);
                 found = true;
             } else {
-                still.push_back(h);
+                still.push_back(c);
             }
         }
         candidates = std::move(still);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -12,7 +13,10 @@ namespace {
 
 constexpr std::array<uint32_t, 2> kOthers = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
 // Between creases, fewer tiles are enough.
-constexpr std::array<uint32_t, 3> kOthersWithCreases = {80, 55, 180};
+constexpr std::array<uint32_t, 2> kOthersWithCreases = {80, 55};
+
+// Brief fits may rank images wrongly whose bytes differ by less than this share. Those of creases tell less.
+constexpr double kNoise = 0.05, kNoiseWithCreases = 0.25;
 
 class Trials {
   public:
@@ -83,10 +87,10 @@ Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& optio
     GIM_TRY(tried, try_tiles(runs, options, has_creases));
     auto best = runs.code(tried[0].options, {});
     for (size_t k = 1; k < tried.size(); ++k) {
-        const double least = tried[0].estimate.log_bytes;
-        const bool is_close = tried[k].estimate.log_bytes < least + RateSearchValues::kEstimateNoise;
-        if (best.ok() && !is_close) continue;
-        auto other = runs.code(tried[k].options, contest_with(best));
+        const auto& [variant, estimate] = tried[k];
+        const double noise = std::log1p(variant.creases ? kNoiseWithCreases : kNoise);
+        if (best.ok() && estimate.log_bytes > tried[0].estimate.log_bytes + noise) continue;
+        auto other = runs.code(variant, variant.creases ? Contest{} : contest_with(best));
         if (improves(other, best, options.rate)) best = std::move(other);
     }
     if (best.ok()) {
