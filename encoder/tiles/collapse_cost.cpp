@@ -175,7 +175,8 @@ CollapseCost::Fan CollapseCost::fan(size_t onto) const {
         ++side.faces;
     }
     close_side();
-    if (on_line) widest.angle *= 2, widest.faces *= 2;
+    if (on_line) widest.angle *= 2;
+    if (!closed_) widest.faces *= 2;
     return widest;
 }
 
