@@ -28,6 +28,8 @@ constexpr double kWidestFan = 1.5 * std::numbers::pi, kWidestLooseFan = 1.9 * st
 // In the tiles a corner of a face is about 60 degrees wide, whatever it is on the surface. A vertex comes back into the
 // fan of faces that it left behind, and that must be narrower than a full turn.
 constexpr size_t kMostEdges = 12, kMostLooseFanFaces = 4;
+// What the angle of one side of a line counts as. With 2, boundaries of many corners stop the collapses too early.
+constexpr double kLineFan = 4.0 / 3;
 constexpr double kNeedleWeight = 0.15;
 constexpr double kFanWeight = 0.5;
 constexpr double kValenceWeight = 0.1;
@@ -159,7 +161,7 @@ bool CollapseCost::crowds(size_t onto) const {
 }
 
 // The faces that the vertex leaves behind. A vertex on a feature comes back on a straight line between two sides. So each
-// side counts as half of a fan, and the wider one decides.
+// side counts by itself, and the wider one decides.
 CollapseCost::Fan CollapseCost::fan(size_t onto) const {
     const bool on_line = spokes_[onto].feature;
     Fan side{}, widest{};
@@ -175,7 +177,8 @@ CollapseCost::Fan CollapseCost::fan(size_t onto) const {
         ++side.faces;
     }
     close_side();
-    if (on_line) widest.angle *= 2, widest.faces *= 2;
+    if (on_line) widest.angle *= kLineFan;
+    if (!closed_) widest.faces *= 2;
     return widest;
 }
 

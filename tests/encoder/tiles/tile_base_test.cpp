@@ -21,14 +21,22 @@ Mesh random_surface(uint32_t seed) {
     const uint32_t size = 1 + below(5), around = 3 + below(8);
     const auto whole = [&] {
         switch (seed % 8) {
-            case 0: return corpus::sphere(size + 1);
-            case 1: return corpus::torus(around, 3 + size, 0.7, 0.3);
-            case 2: return corpus::plate_with_holes(size, 1 + size % 3);
-            case 3: return corpus::disk(size, around);
-            case 4: return corpus::open_cylinder(size, around, 1);
-            case 5: return corpus::box(size, 1, 0.5);
-            case 6: return corpus::annulus(size, around, 0.5);
-            default: return corpus::terrain(2 * size);
+            case 0:
+                return corpus::sphere(size + 1);
+            case 1:
+                return corpus::torus(around, 3 + size, 0.7, 0.3);
+            case 2:
+                return corpus::plate_with_holes(size, 1 + size % 3);
+            case 3:
+                return corpus::disk(size, around);
+            case 4:
+                return corpus::open_cylinder(size, around, 1);
+            case 5:
+                return corpus::box(size, 1, 0.5);
+            case 6:
+                return corpus::annulus(size, around, 0.5);
+            default:
+                return corpus::terrain(2 * size);
         }
     };
     TriangleMesh mesh = whole();
