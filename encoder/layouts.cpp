@@ -71,8 +71,8 @@ double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageCl
     if (options.tiles == 0) options.tiles = kUsualTiles;
     const auto tiles = make_tiles(TileableSurfaces(mesh).of(options.creases), mesh, options, clock);
     if (!tiles.ok()) return 0;
-    const auto& [image, atlas, stretch_efficiency, folds] = tiles.value();
-    return stretch_efficiency * double(image.positions.size()) / double(atlas.positions.size());
+    const MadeTiles& made = tiles.value();
+    return made.stretch_efficiency * double(made.tiles.positions.size()) / double(made.atlas.positions.size());
 }
 
 constexpr std::array<LayoutEntry, 3> kLayouts = {{
