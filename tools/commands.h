@@ -29,7 +29,7 @@ struct DecodeCommand {
     std::string input, output;
     std::string format;  // an extension; empty: that of the output
     uint32_t level = 0;
-    bool fused = false;
+    bool fused = false, split_sharp = false;
     std::string normal_map, color_map;  // .png or .exr to write; empty: none
 };
 int run_decode(const DecodeCommand& command);

@@ -114,7 +114,7 @@ int run_decode(const DecodeCommand& command) {
         const Result<void> added = add_planes(Kind::kNormals, command.normal_map, images.value(), files);
         if (!added.ok()) return report_error(input_name, added.error());
     }
-    SurfaceOptions options{command.fused, {}};
+    SurfaceOptions options{command.fused, command.split_sharp, {}};
     if (!command.color_map.empty()) {
         const Result<void> added = add_planes(Kind::kColors, command.color_map, images.value(), files);
         if (!added.ok()) return report_error(input_name, added.error());

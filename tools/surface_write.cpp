@@ -109,9 +109,9 @@ struct ShadedMesh {
     std::span<const float> positions, normals, texcoords;
     std::span<const uint32_t> triangles;
 };
-ShadedMesh shaded_mesh(const DecodedImage& image, bool fused) {
+ShadedMesh shaded_mesh(const DecodedImage& image, bool split_sharp) {
     const HardMesh& hard = image.hard;
-    if (hard.is_there() && !fused) return {hard.positions, hard.normals, hard.texcoords, hard.triangles};
+    if (hard.is_there() && split_sharp) return {hard.positions, hard.normals, hard.texcoords, hard.triangles};
     return {image.positions, image.normals, image.texcoords, image.triangles};
 }
 
@@ -131,11 +131,11 @@ std::optional<SurfaceFormat> surface_format_of(std::string_view extension) {
     return std::nullopt;
 }
 
-Bytes write_ply(std::span<const DecodedImage> images, bool fused) {
+Bytes write_ply(std::span<const DecodedImage> images, bool split_sharp) {
     std::vector<ShadedMesh> meshes;
     size_t vertices = 0;
     for (const DecodedImage& image : images) {
-        meshes.push_back(shaded_mesh(image, fused));
+        meshes.push_back(shaded_mesh(image, split_sharp));
         vertices += meshes.back().positions.size() / 3;
     }
     Bytes out;
@@ -283,7 +283,7 @@ std::string rounding_warning(SurfaceFormat format, std::span<const DecodedImage>
 Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> images, const SurfaceOptions& options) {
     switch (format) {
         case SurfaceFormat::kPly:
-            return write_ply(images, options.fused);
+            return write_ply(images, options.split_sharp);
         case SurfaceFormat::kObj:
             return write_obj(images, options.material_file);
         case SurfaceFormat::kOff:

@@ -3,8 +3,8 @@
 // PLY, OBJ and OFF share the vertices on the cut, so the surface is watertight by its indices. STL repeats every vertex
 // by nature. GLB repeats the samples on the cut, with equal positions and normals, because texture coordinates jump
 // there. With `fused` it leaves out texture coordinates and shares the vertices. Normals differ on both sides of sharp
-// edges; so PLY repeats the vertices there, unless `fused`. Several images become objects (OBJ),
-// nodes (GLB), parts (EXR), or else one mesh.
+// edges: OBJ and GLB say so. PLY has one normal for each vertex, and repeats the vertices there only with `split_sharp`.
+// Several images become objects (OBJ), nodes (GLB), parts (EXR), or else one mesh.
 //
 // Coordinates are float32 in every format (text: shortest decimal form that reads back as the same float). Those of
 // images with an origin are float64 in PLY, OBJ and OFF, relative to the node's translation in GLB, relative to the
@@ -27,7 +27,8 @@ enum class SurfaceFormat { kPly, kObj, kOff, kStl, kGlb, kExr };
 std::optional<SurfaceFormat> surface_format_of(std::string_view extension);
 
 struct SurfaceOptions {
-    bool fused = false;              // GLB and PLY
+    bool fused = false;              // GLB only
+    bool split_sharp = false;        // PLY only
     std::string material_file = {};  // OBJ only: what mtllib names; empty: none
 };
 
@@ -39,7 +40,7 @@ Result<Bytes> write_surface(SurfaceFormat format, std::span<const DecodedImage> 
 
 // One function per format. PLY and OBJ store colours at the vertices. GLB stores them as base-colour texture, and a
 // normal map as tangent-space normal texture (both PNG).
-Bytes write_ply(std::span<const DecodedImage> images, bool fused = false);  // binary little-endian, with normals
+Bytes write_ply(std::span<const DecodedImage> images, bool split_sharp = false);  // binary little-endian, with normals
 // With normals and texture coordinates (right on both sides of the cut). Material i of the file is "image<i>".
 Bytes write_obj(std::span<const DecodedImage> images, const std::string& material_file = {});
 Bytes write_off(std::span<const DecodedImage> images);
