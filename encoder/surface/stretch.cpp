@@ -146,16 +146,16 @@ StarDescent descend_star(const std::vector<StarTriangle>& star, Vec2& x, int ste
     return {start, here.value};
 }
 
-bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x) {
+bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x, double margin) {
     // Clips a box around the star to what lies left of every outer edge.
     Vec2 low = star.front().p1, high = low;
     for (const StarTriangle& t : star) {
         low = low.cwiseMin(t.p1).cwiseMin(t.p2);
         high = high.cwiseMax(t.p1).cwiseMax(t.p2);
     }
-    const double margin = (high - low).maxCoeff();  // the kernel of an open star may lie beside its triangles
-    low.array() -= margin;
-    high.array() += margin;
+    const double beyond = margin * (high - low).maxCoeff();
+    low.array() -= beyond;
+    high.array() += beyond;
     std::vector<Vec2> polygon{low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())}, clipped;
     for (const StarTriangle& t : star) {
         clipped.clear();

@@ -64,6 +64,8 @@ StarDescent descend_star(const std::vector<StarTriangle>& star, Vec2& x, int ste
 
 // Finds a point well inside the kernel of the star, from which every triangle is counter-clockwise. Returns false if
 // there is none.
-bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x);
+// margin: how far beyond the star's bounding box the point may lie, in sides of the box. The kernel of an open star may
+// lie beside its triangles.
+bool find_kernel_point(const std::vector<StarTriangle>& star, Vec2& x, double margin = 0);
 
 }  // namespace gim

@@ -168,7 +168,7 @@ bool TileMapper::find_place(uint32_t v, uint32_t into) {
     for (const StarTriangle& t : star_) mean += t.p1;
     mean /= static_cast<double>(star_.size());
     if (place_from(mean, open)) return true;
-    return find_kernel_point(star_, inside) && place_from(inside, open);
+    return find_kernel_point(star_, inside, 1) && place_from(inside, open);
 }
 
 bool TileMapper::place_from(const Vec2& start, bool open) {
