@@ -78,7 +78,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     const Observer local_observer = moved_out_of(frame, observer);
 
     options.rate = resolved_target(options.rate, reference.diagonal());
-    return encode_by(options.layout, prepared, options, clock, local_observer);
+    return timed(encode_by(options.layout, prepared, options, clock, local_observer), clock);
 }
 
 }  // namespace

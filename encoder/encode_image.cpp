@@ -42,13 +42,14 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
         std::clamp(std::max(options.node_side, image.sideband.node_side), 5u, std::max(image.side(), 5u));
     const ReferenceSurface reference(surface, options.threads);
     const TriangleMesh no_colors;
-    return within_budget(options, [&](const EncodeOptions& now) {
+    auto encoded = within_budget(options, [&](const EncodeOptions& now) {
         Squares squares;
         squares.images.push_back(image);
         squares.surfaces.push_back(surface);
         FileRun run(squares_layout(std::move(squares), now), {reference, no_colors, frame}, now, clock, report);
         return run.finish({});
     });
+    return timed(std::move(encoded), clock);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 namespace gim {
 
 struct FileRun::Impl {
-  public:
     Impl(std::unique_ptr<LayoutImages> images, const Original& original, const EncodeOptions& options,
          StageClock& clock, EncodeReport report)
         : images_(std::move(images)),
@@ -41,8 +40,6 @@ struct FileRun::Impl {
         if (frame.is_moved) encoded.bytes = move_origin(encoded.bytes, {origin.x(), origin.y(), origin.z()});
         move_out_of(frame, encoded.report);
         describe_file(encoded.bytes, encoded.report);
-        encoded.report.times = clock_.times();
-        encoded.report.seconds = clock_.seconds();
         return encoded;
     }
 
@@ -94,5 +91,14 @@ FileRun::~FileRun() = default;
 
 Result<Estimate> FileRun::estimate(std::optional<double> near) { return impl_->estimate(near); }
 Result<Encoded> FileRun::finish(const Contest& contest) { return impl_->finish(contest); }
+
+Result<Encoded> timed(Result<Encoded> encoded, StageClock& clock) {
+    clock.end();
+    if (encoded.ok()) {
+        encoded.value().report.times = clock.times();
+        encoded.value().report.seconds = clock.seconds();
+    }
+    return encoded;
+}
 
 }  // namespace gim

@@ -33,12 +33,15 @@ class FileRun {
     // RateSearch::estimate(). finish() goes on from there.
     Result<Estimate> estimate(std::optional<double> near);
 
-    // Returns the file, in object space, with the completed report. contest: RateSearch::run(). Call it once.
+    // Returns the file, in object space, with the report completed but for the times. contest: RateSearch::run(). Call it once.
     Result<Encoded> finish(const Contest& contest);
 
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+// Puts the times of a whole encoding into its report: those of all runs, also of the ones that lost. Ends the clock.
+Result<Encoded> timed(Result<Encoded> encoded, StageClock& clock);
 
 }  // namespace gim

@@ -17,7 +17,7 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
       options_(options),
       clock_(clock),
       observer_(observer),
-      drops_colors_(layout.layout == Layout::kTiles && !options.color_side),
+      drops_colors_(!layout.holds_planes && !options.color_side),
       tileable_(prepared.mesh) {
     options_.layout = layout.layout;
     if (drops_colors_) options_.color_side = 0;
@@ -73,8 +73,8 @@ CodingRuns LayoutRuns::runs(const Contest& contest) {
 }
 
 Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {
-    return layout() == Layout::kTiles ? best_of_tiles(runs(contest), now, tileable_.has_creases(), clock_)
-                                      : best_of_sides(runs(contest), now, clock_);
+    return layout() == Layout::kTiles ? best_of_tiles(runs(contest), now, tileable_.has_creases())
+                                      : best_of_sides(runs(contest), now);
 }
 
 Result<Encoded> LayoutRuns::best(const Contest& contest) {

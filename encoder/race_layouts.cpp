@@ -107,8 +107,6 @@ class Race {
 
     // The report of the winner.
     void complete(EncodeReport& report) const {
-        report.times = clock_.times();
-        report.seconds = clock_.seconds();
         std::copy_if(costs_.begin(), costs_.end(), std::back_inserter(report.others),
                      [&](const LayoutCost& cost) { return cost.layout != report.layout; });
     }

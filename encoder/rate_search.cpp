@@ -42,7 +42,6 @@ double rounded_up(double value) {
 }  // namespace
 
 struct RateSearch::Impl {
-  public:
     Impl(LayoutImages& images, CodingParameters parameters, const EncodeOptions& options,
          const ReferenceSurface& reference, StageClock& clock)
         : images_(images),

@@ -44,6 +44,18 @@ const char* layout_name(uint32_t layout) {
     }
 }
 
+// What the paths of a layout's seams are.
+const char* paths_name(uint32_t layout) {
+    switch (layout) {
+        case GIM_LAYOUT_TILES:
+            return "sides of tiles";
+        case GIM_LAYOUT_MCGIM:
+            return "paths on borders of charts";
+        default:
+            return "cut paths";
+    }
+}
+
 const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS ? "lossless" : "lossy"; }
 
 const char* plane_name(uint32_t kind) { return kind == GIM_PLANE_NORMALS ? "normals" : "colors"; }
@@ -216,7 +228,7 @@ void print_text(const std::string& path, const Description& d) {
     }
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
-        std::printf("image %zu: %u cut paths", i, image.paths);
+        std::printf("image %zu: %u %s", i, image.paths, paths_name(info.layout));
         if (image.seam_points > 0) std::printf(", %u surface points on the ring", image.seam_points);
         std::printf("\n  level         size   vertices  triangles   bytes needed\n");
         for (const DecoderLevel& level : image.levels) {

@@ -31,7 +31,7 @@ std::vector<EncodeOptions> side_variants(const EncodeOptions& options) {
     return {halved(options), options};
 }
 
-Result<Encoded> best_of_sides(const CodingRuns& runs, const EncodeOptions& whole, const StageClock& clock) {
+Result<Encoded> best_of_sides(const CodingRuns& runs, const EncodeOptions& whole) {
     if (!may_halve(whole)) return runs.code(whole, {});
     EncodeOptions options = halved(whole);
     auto best = runs.code(options, {0, true});
@@ -45,10 +45,6 @@ Result<Encoded> best_of_sides(const CodingRuns& runs, const EncodeOptions& whole
             if (!improves(half, best, whole.rate)) break;
             best = std::move(half);
         }
-    }
-    if (best.ok()) {
-        best.value().report.times = clock.times();
-        best.value().report.seconds = clock.seconds();
     }
     return best;
 }

@@ -81,8 +81,7 @@ Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOp
     return trials.cheapest_first();
 }
 
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
-                              const StageClock& clock) {
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases) {
     if (!is_searched(options.rate)) return code_once(runs, usual(options, has_creases));
     GIM_TRY(tried, try_tiles(runs, options, has_creases));
     auto best = runs.code(tried[0].options, {});
@@ -92,10 +91,6 @@ Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& optio
         if (best.ok() && estimate.log_bytes > tried[0].estimate.log_bytes + noise) continue;
         auto other = runs.code(variant, variant.creases ? Contest{} : contest_with(best));
         if (improves(other, best, options.rate)) best = std::move(other);
-    }
-    if (best.ok()) {
-        best.value().report.times = clock.times();
-        best.value().report.seconds = clock.seconds();
     }
     return best;
 }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "encoder/base/stage_clock.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/layout/encode_once.h"
 
@@ -23,9 +22,7 @@ struct TriedTiles {
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
 // If the target is searched for, codes the cheapest of try_tiles(), and those that cost almost the same; one that is sure
-// to lose ends early (contest.h). Else tiles keep creases if that leads to a file. Returns the best file. The times are
-// those of all runs.
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
-                              const StageClock& clock);
+// to lose ends early (contest.h). Else tiles keep creases if that leads to a file. Returns the best file.
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
 }  // namespace gim

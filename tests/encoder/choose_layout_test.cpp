@@ -11,15 +11,22 @@
 namespace gim {
 namespace {
 
-Encoded encoded_as(Layout layout, const TriangleMesh& mesh, const RateTarget& rate) {
+Result<Encoded> encoded_as(Layout layout, const TriangleMesh& mesh, const RateTarget& rate, uint32_t side,
+                           FitStrength fit) {
     EncodeOptions options;
     options.layout = layout;
-    options.side = 33;
-    options.samples = 33 * 33;
+    options.side = side;
+    options.samples = side * side;
     options.rate = rate;
-    options.fit = FitStrength::kOff;
+    options.fit = fit;
     options.density = false;
-    auto encoded = encode(mesh, options);
+    return encode(mesh, options);
+}
+
+// ---- lossless files -------------------------------------------------------------------------------------------------
+
+Encoded sampled_as(Layout layout, const TriangleMesh& mesh, const RateTarget& rate) {
+    auto encoded = encoded_as(layout, mesh, rate, 33, FitStrength::kOff);
     EXPECT_TRUE(encoded.ok()) << encoded.error().message;
     return encoded.ok() ? std::move(encoded.value()) : Encoded{};
 }
@@ -28,9 +35,9 @@ struct Choice {
     Encoded squares, charts, automatic;
 
     Choice(const TriangleMesh& mesh, const RateTarget& rate)
-        : squares(encoded_as(Layout::kGim, mesh, rate)),
-          charts(encoded_as(Layout::kMcgim, mesh, rate)),
-          automatic(encoded_as(Layout::kAuto, mesh, rate)) {}
+        : squares(sampled_as(Layout::kGim, mesh, rate)),
+          charts(sampled_as(Layout::kMcgim, mesh, rate)),
+          automatic(sampled_as(Layout::kAuto, mesh, rate)) {}
 
     // By how many decibels charts are nearer to the mesh at the same number of samples.
     double gain_of_charts() const { return charts.report.error.psnr - squares.report.error.psnr; }
@@ -55,14 +62,7 @@ TEST(ChooseLayout, ABoxIsCutIntoItsFaces) {
 // ---- lossy files: squares and tiles race ----------------------------------------------------------------------------
 
 Result<Encoded> raced(Layout layout, const TriangleMesh& mesh, const RateTarget& rate) {
-    EncodeOptions options;
-    options.layout = layout;
-    options.side = 65;
-    options.samples = 65 * 65;
-    options.rate = rate;
-    options.fit = FitStrength::kStiff;
-    options.density = false;
-    return encode(mesh, options);
+    return encoded_as(layout, mesh, rate, 65, FitStrength::kStiff);
 }
 
 TEST(ChooseLayout, OfSquaresAndTilesTheSmallerFileIsKept) {
