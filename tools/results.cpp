@@ -18,6 +18,7 @@
 #include "tools/decoded.h"
 #include "tools/file.h"
 #include "tools/input.h"
+#include "tools/report_json.h"
 
 namespace gim {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::string_view kHeader =
     "model,setting,coder,width,height,charts,packing,vertices,bytes,psnr_db,rms_to_test,rms_to_reference,hausdorff,"
     "stretch_efficiency,folds_sampled,folded_faces,folded_area,off_by_20,off_by_45,normals_p95,normals_p99,"
     "p999_over_rms,max_over_rms,folded_back_edges,folded_back_edges_of_reference,level1_folded_faces,"
-    "level1_folded_area,levels,decode_ms,encode_cpu_s";
+    "level1_folded_area,levels,decode_ms,encode_cpu_s,layout,tiles";
 constexpr const char* kPackagedBunny = "/usr/share/glmark2/models/bunny.obj";
 constexpr uint32_t kDefaultSide = 257;
 
@@ -41,6 +42,9 @@ constexpr std::array kScanned = {
     "teapot",       "bones"};
 constexpr std::array kAgainstRivals = {"bunny", "horse",  "feline",   "venus", "igea",
                                        "hand",  "dragon", "gargoyle", "david", "rocker-arm"};
+constexpr std::array kRaced = {"bunny",   "horse",  "feline",         "venus",  "igea",
+                               "hand",    "dragon", "gargoyle",       "david",  "rocker-arm",
+                               "fandisk", "block",  "flange-genus13", "teapot", "bones"};
 constexpr std::array kOfThePaper = {"horse", "dragon", "feline", "gargoyle"};
 
 struct Setting {
@@ -54,13 +58,17 @@ struct Setting {
 constexpr uint32_t kChartSamples = 65536;  // as in the paper's tables
 constexpr RateTarget kLossless = {RateTarget::Kind::kLossless, 0};
 constexpr RateTarget psnr_target(double value) { return {RateTarget::Kind::kPsnr, value}; }
-constexpr std::array<Setting, 9> kSettings = {
+constexpr std::array<Setting, 13> kSettings = {
     {{"quality-75", {}, {RateTarget::Kind::kQuality, 75}},
      {"psnr-70", {}, psnr_target(70)},
      {"file-60-db", kAgainstRivals, psnr_target(60), 12, Layout::kGim, true},
      {"file-65-db", kAgainstRivals, psnr_target(65), 12, Layout::kGim, true},
      {"file-70-db", kAgainstRivals, psnr_target(70), 12, Layout::kGim, true},
      {"file-75-db", kAgainstRivals, psnr_target(75), 12, Layout::kGim, true},
+     {"auto-60-db", kRaced, psnr_target(60), 12, Layout::kAuto, true},
+     {"auto-65-db", kRaced, psnr_target(65), 12, Layout::kAuto, true},
+     {"auto-70-db", kRaced, psnr_target(70), 12, Layout::kAuto, true},
+     {"auto-75-db", kRaced, psnr_target(75), 12, Layout::kAuto, true},
      {"lossless-16", {}, kLossless, 16},
      {"mcgim-lossless-16", kScanned, kLossless, 16, Layout::kMcgim},
      {"mcgim-2-bits-a-sample", kOfThePaper, {RateTarget::Kind::kBytes, kChartSamples * 2.0 / 8}, 12, Layout::kMcgim}}};
@@ -144,7 +152,8 @@ std::string measured_row(const std::string& model, const Setting& setting, const
            cells("%.2f,%.4g,%.4g,%.4g,%.4f,%llu,", r.error.psnr, r.error.rms_to_test, r.error.rms_to_reference,
                  r.error.hausdorff, r.stretch_efficiency, wide(r.folds_before_fit)) +
            defect_cells(r) +
-           cells(",%zu,%.2f,%.1f", r.levels.size(), decode_milliseconds(encoded.value().bytes), seconds);
+           cells(",%zu,%.2f,%.1f,%s,%u", r.levels.size(), decode_milliseconds(encoded.value().bytes), seconds,
+                 name_of(r.layout), r.tiles);
 }
 
 bool is_among(std::span<const char* const> names, const std::string& name) {

@@ -28,6 +28,7 @@ BEGIN, END = "<!-- sizes:begin -->", "<!-- sizes:end -->"
 TARGETS_DB = (60, 65, 70, 75)
 COMPARED = ("bunny", "horse", "feline", "venus", "igea", "hand", "dragon", "gargoyle", "david", "rocker-arm")
 OLD = "†"
+TILES = "▦"
 REACH_DB = 0.5     # the rival's curve counts this far beyond its ends, with the values of the ends
 REACH_BYTES = 1.1  # likewise, as a factor
 PAPER_PSNR = {"horse": 84.6, "feline": 79.5, "dragon": 77.9, "gargoyle": 83.8}  # charts of Sander et al. 2003
@@ -104,29 +105,41 @@ def of_setting(results, setting):
 
 # ---- the table against rivals ----------------------------------------------------------------------------------------
 
+def raced(results, model, db):
+    """Returns the row of the layout that won, else that of the square."""
+    return results.get((model, f"auto-{db}-db")) or results.get((model, f"file-{db}-db"))
+
+
+def square(results, model, db):
+    return results.get((model, f"file-{db}-db"))
+
+
 def size_cell(row, rival):
     """Returns the bytes of gim, the bytes of the rival and their quotient."""
     if row is None or row.failure:
         return "-"
+    size = row.bytes() + (f" {TILES}" if row.cells["layout"] == "tiles" else "")
     if rival is None:
-        return row.bytes()
-    return f"{row.bytes()} / {rival:,.0f} = {row.number('bytes') / rival:.2f}"
+        return size
+    return f"{size} / {rival:,.0f} = {row.number('bytes') / rival:.2f}"
 
 
-def size_lines(results, rivals, models):
+def size_lines(results, rivals, models, find):
     lines = []
     for model in models:
-        found = [results.get((model, f"file-{db}-db")) for db in TARGETS_DB]
+        found = [find(results, model, db) for db in TARGETS_DB]
         if any(found):
             sizes = rivals.get(model, {})
             lines.append([model] + [size_cell(row, sizes.get(db)) for row, db in zip(found, TARGETS_DB)])
     return lines
 
 
-def size_table(results, rivals, models):
-    lines = size_lines(results, rivals, models)
-    note = f"\n\n{OLD} An older coder made this file. It was not measured again." if OLD in str(lines) else ""
-    return markdown(["model"] + [f"{db} dB" for db in TARGETS_DB], lines) + note
+def size_table(results, rivals, models, find=raced):
+    lines = size_lines(results, rivals, models, find)
+    notes = [f"{TILES} Tiles. The others are squares."] if TILES in str(lines) else []
+    if OLD in str(lines):
+        notes.append(f"{OLD} An older coder made this file. It was not measured again.")
+    return "\n\n".join([markdown(["model"] + [f"{db} dB" for db in TARGETS_DB], lines), " ".join(notes)]).rstrip()
 
 
 def with_size_table(text, table):
@@ -165,13 +178,17 @@ How the figures were measured:
 
 
 def rival_section(results, rivals):
-    others = [model for model in rivals if model not in COMPARED and (model, "file-70-db") in results]
+    others = [model for model in rivals if model not in COMPARED and raced(results, model, 70)]
     text = f"""## Whole files against the best rival
 
-`gim encode MESH OUT --psnr DB`, with `DB` as in the head of the column. The encoder may choose a grid smaller than 257 x 257.
-Each cell is: bytes of gim / bytes of the rival = quotient. The head of `rivals.csv` says how the rival was measured.
+`gim encode MESH OUT --psnr DB`, with `DB` as in the head of the column. The encoder chooses between a square of at most 257 x 257 and
+tiles. Each cell is: bytes of gim / bytes of the rival = quotient. The head of `rivals.csv` says how the rival was measured.
 
 {size_table(results, rivals, COMPARED)}
+
+One square alone, `--layout gim`:
+
+{size_table(results, rivals, COMPARED, square)}
 """
     if others:
         text += f"""
@@ -182,15 +199,17 @@ Machined parts and other models that are small or smooth:
     lines = []
     for model in [*COMPARED, *others]:
         for db in TARGETS_DB:
-            row = results.get((model, f"file-{db}-db"))
-            if row and row.number("psnr_db") is not None:
-                lines.append([model, f"{db} dB", row.bytes(), row.text("psnr_db", ".2f", " dB"), row.text("width", ".0f"),
-                              row.text("decode_ms", ".2f", " ms"), row.text("encode_cpu_s", ".0f", " s")])
+            for row in (results.get((model, f"{kind}-{db}-db")) for kind in ("auto", "file")):
+                if row and row.number("psnr_db") is not None:
+                    size = f"{row.text('tiles')} tiles" if row.cells["layout"] == "tiles" else row.text("width", ".0f")
+                    lines.append([model, f"{db} dB", row.cells["setting"].split("-")[0].replace("file", "square"), row.bytes(),
+                                  row.text("psnr_db", ".2f", " dB"), size, row.text("decode_ms", ".2f", " ms"),
+                                  row.text("encode_cpu_s", ".0f", " s")])
     if lines:
         text += f"""
-The same files in detail. "Side" is the number of samples a side that the encoder chose.
+The same files in detail. "Size" is the number of samples a side that the encoder chose, or the number of tiles.
 
-{markdown(["model", "target", "bytes", "PSNR", "side", "decoding", "encoding"], lines)}
+{markdown(["model", "target", "layouts", "bytes", "PSNR", "size", "decoding", "encoding"], lines)}
 """
     return text
 
@@ -264,7 +283,7 @@ What a person sees of a surface whose distances are small. `gim compare` prints 
         return text + "\nNo row has these figures yet.\n"
     models = [*COMPARED, *(model for model in rival_defects if model not in COMPARED)]
     lines = [[model, f"{db} dB{f' {OLD}' if row.is_old else ''}"] + defect_line(row, rival_defects.get(model, []))
-             for model in models for db in TARGETS_DB if has_defects(row := results.get((model, f"file-{db}-db")))]
+             for model in models for db in TARGETS_DB if has_defects(row := raced(results, model, db))]
     if lines:
         head = ["model", "target", "folded triangles", "folded area", "edges folded back", "normals, 99 %", "off by > 45"]
         text += f"""
@@ -418,7 +437,7 @@ def draw(results, rivals, rival_defects):
     from matplotlib import ticker
 
     rows = {model: [(db, row) for db in TARGETS_DB
-                    if (row := results.get((model, f"file-{db}-db"))) and row.number("bytes") is not None] for model in COMPARED}
+                    if (row := raced(results, model, db)) and row.number("bytes") is not None] for model in COMPARED}
     lines = 4 if any(has_defects(row) for found in rows.values() for _, row in found) else 2
     figure, grid = plt.subplots(lines, 5, figsize=(15, 3 * lines))
     for i, model in enumerate(COMPARED):
