@@ -226,6 +226,8 @@ Subcommand add_encode(CLI::App& app) {
         "points where parts touch, drops faces without area, turns faces over. --strict refuses such a surface "
         "instead.\n"
         "In the layout gim, each connected component becomes an image of its own.\n"
+        "Tiles keep sharp edges sharp: the hard edges that the normals of OBJ, PLY and glTF and the smoothing groups of\n"
+        "OBJ name, or if these smooth all or nothing, those that the shape shows.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
         "size tells its side. gim imports it with the parametrization that it has.\n"
         "Two names of one file are refused. If OUT is standard output, the summary goes to stderr.\n"
