@@ -24,7 +24,9 @@ constexpr double kLeastBend = 10;
 constexpr double kFlatEdges = 0.95, kFlatVertices = 0.9;
 // Lines may fork and end at so many vertices, as many as a base has, or else at this part of their vertices.
 constexpr uint32_t kMostKnots = 100;
-constexpr double kKnottedPart = 0.5;
+constexpr double kKnottedPart = 0.25;
+// Of the hard edges that bend the surface, at least this part, by length, forms long lines. Less is chance.
+constexpr double kLeastPart = 0.25;
 
 class Reader {
   public:
@@ -42,14 +44,16 @@ class Reader {
         for (uint32_t h = 0; h < named.size(); ++h) named[h] = topology_.twin[h] != kNone && breaks_[h] >= kHardBreak;
         std::vector<bool> lines = named;
         drop_gentle_lines(lines);
+        const std::vector<double> before = lengths(lines);
         drop_short_lines(mesh_, topology_, lines);
+        const std::vector<double> after = lengths(lines);
         const std::vector<bool> is_flat = find_flat(), is_knotted = find_knotted(lines);
 
         AuthoredEdges authored;
         authored.words.assign(breaks_.size(), EdgeWord::kNothing);
         for (uint32_t h = 0; h < breaks_.size(); ++h) {
             const uint32_t c = components_.of_face[face_of(h)];
-            if (is_flat[c] || is_knotted[c]) continue;
+            if (is_flat[c] || is_knotted[c] || after[c] < kLeastPart * before[c]) continue;
             authored.words[h] = lines[h] ? EdgeWord::kHard : EdgeWord::kSmooth;
             authored.named += is_owner(h) && named[h];
             authored.kept += is_owner(h) && lines[h];
@@ -71,6 +75,15 @@ class Reader {
     double bend_at(uint32_t h) const {
         const Vec3 a = normal_of(face_of(h)), b = normal_of(face_of(topology_.twin[h]));
         return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
+    }
+
+    // Length of the marked edges of each component.
+    std::vector<double> lengths(const std::vector<bool>& marked) const {
+        std::vector<double> length(components_.count, 0);
+        for (uint32_t h = 0; h < marked.size(); ++h) {
+            if (marked[h] && is_owner(h)) length[components_.of_face[face_of(h)]] += length_of(h);
+        }
+        return length;
     }
 
     // Number of marked edges at each vertex.
