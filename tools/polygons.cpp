@@ -197,7 +197,8 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
         for (const LocalTriangle& piece : pieces) {
             mesh.triangles.push_back({face[piece[0]], face[piece[1]], face[piece[2]]});
             if (is_colored) add_appearance(soup, f, first, piece, mesh.triangles.back(), mesh.appearance);
-            if (!soup.normals.empty()) mesh.shading.corners.push_back(normals_of(soup, first, piece, mesh.triangles.back()));
+            if (!soup.normals.empty())
+                mesh.shading.corners.push_back(normals_of(soup, first, piece, mesh.triangles.back()));
         }
         first += size;
     }

@@ -46,17 +46,17 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
         Role role;
     };
     static constexpr std::array<Entry, 12> kVertexRoles = {{{"x", Role::kX},
-                                                           {"y", Role::kY},
-                                                           {"z", Role::kZ},
-                                                           {"u", Role::kU},
-                                                           {"v", Role::kV},
-                                                           {"s", Role::kU},
-                                                           {"t", Role::kV},
-                                                           {"texture_u", Role::kU},
-                                                           {"texture_v", Role::kV},
-                                                           {"nx", Role::kNormalX},
-                                                           {"ny", Role::kNormalY},
-                                                           {"nz", Role::kNormalZ}}};
+                                                            {"y", Role::kY},
+                                                            {"z", Role::kZ},
+                                                            {"u", Role::kU},
+                                                            {"v", Role::kV},
+                                                            {"s", Role::kU},
+                                                            {"t", Role::kV},
+                                                            {"texture_u", Role::kU},
+                                                            {"texture_v", Role::kV},
+                                                            {"nx", Role::kNormalX},
+                                                            {"ny", Role::kNormalY},
+                                                            {"nz", Role::kNormalZ}}};
     static constexpr std::array<Entry, 9> kColorRoles = {{{"red", Role::kRed},
                                                           {"green", Role::kGreen},
                                                           {"blue", Role::kBlue},

@@ -46,7 +46,8 @@ std::vector<Corner> corners_of_groups(const std::vector<uint32_t>& groups, const
     uint32_t index = 0;
     for (uint32_t f = 0; f < groups.size(); ++f) {
         for (uint32_t i = 0; i < soup.sizes[f]; ++i, ++index) {
-            if (groups[f] != 0) corners.push_back({uint64_t{groups[f]} << 32 | static_cast<uint32_t>(soup.corners[index]), index, f});
+            if (groups[f] != 0)
+                corners.push_back({uint64_t{groups[f]} << 32 | static_cast<uint32_t>(soup.corners[index]), index, f});
         }
     }
     std::sort(corners.begin(), corners.end(),

@@ -27,7 +27,7 @@ struct CleanReport {
 struct CleanMesh {
     Mesh mesh;                            // oriented 2-manifold without unreferenced vertices
     std::vector<uint32_t> source_vertex;  // per vertex: its (first) index in the input; a new vertex has a neighbour's
-    std::vector<float> breaks;            // per half-edge, as normal_breaks.h finds them; empty: the input has no normals
+    std::vector<float> breaks;  // per half-edge, as normal_breaks.h finds them; empty: the input has no normals
     CleanReport report;
 };
 

@@ -61,7 +61,8 @@ void drop_short_lines(const Mesh& mesh, const Topology& topology, std::vector<bo
     for (uint32_t h = 0; h < sharp.size(); ++h) {
         if (!sharp[h]) continue;
         const uint32_t line = lines.sets.find(from(mesh, h));
-        const double least = (lines.ends[line] > 0 ? kLeastLength : kLeastLoop) * diagonal[surfaces.find(from(mesh, h))];
+        const double least =
+            (lines.ends[line] > 0 ? kLeastLength : kLeastLoop) * diagonal[surfaces.find(from(mesh, h))];
         sharp[h] = lines.length[line] >= least && lines.edges[line] >= kEdgesPerEnd * lines.ends[line];
     }
 }

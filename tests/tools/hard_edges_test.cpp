@@ -339,8 +339,9 @@ TEST(HardEdges, SquaresKeepTheirBytes) {
     save(folder.file("bare.obj"), obj_text(part.mesh));
     save(folder.file("part.obj"), obj_with_normals(part.mesh));
     for (const char* name : {"bare", "part"}) {
-        const Outcome run = gim({"encode", folder.file(std::string(name) + ".obj"),
-                                 folder.file(std::string(name) + ".gim"), "--layout", "gim", "--size", "33", "--quiet"});
+        const Outcome run =
+            gim({"encode", folder.file(std::string(name) + ".obj"), folder.file(std::string(name) + ".gim"), "--layout",
+                 "gim", "--size", "33", "--quiet"});
         ASSERT_EQ(run.status, 0) << run.err;
     }
     EXPECT_EQ(test::load_text(folder.file("bare.gim")), test::load_text(folder.file("part.gim")));

@@ -68,7 +68,8 @@ void shade_above(TriangleMesh& mesh, double degrees) {
     const auto is_neighbour = [&](uint32_t f, uint32_t g) {
         const auto& s = mesh.triangles[f];
         const auto& t = mesh.triangles[g];
-        return std::count_if(s.begin(), s.end(), [&](uint32_t v) { return std::count(t.begin(), t.end(), v) > 0; }) == 2;
+        return std::count_if(s.begin(), s.end(), [&](uint32_t v) { return std::count(t.begin(), t.end(), v) > 0; }) ==
+               2;
     };
     mesh.shading = {};
     for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -194,7 +195,8 @@ TEST(AuthoredEdges, ConesAreSmoothAroundTheirApex) {
     }
     const auto slope = [&](double s) {
         const double angle = 2 * std::numbers::pi * s / sides;
-        return std::array<float, 3>{static_cast<float>(2 * std::cos(angle)), static_cast<float>(2 * std::sin(angle)), 1};
+        return std::array<float, 3>{static_cast<float>(2 * std::cos(angle)), static_cast<float>(2 * std::sin(angle)),
+                                    1};
     };
     for (uint32_t s = 0; s < sides; ++s) {
         const uint32_t a = 2 + s, b = 2 + (s + 1) % sides;
@@ -218,7 +220,8 @@ TEST(AuthoredEdges, EachComponentSpeaksForItself) {
         const auto first = static_cast<uint32_t>(all.positions.size());
         const auto normal = static_cast<uint32_t>(all.shading.normals.size());
         for (auto p : mesh.positions) {
-            all.shading.normals.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+            all.shading.normals.push_back(
+                {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
             p[0] += x;
             all.positions.push_back(p);
         }
