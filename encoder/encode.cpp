@@ -15,6 +15,7 @@
 #include "encoder/planes/input_colors.h"
 #include "encoder/planes/make_planes.h"
 #include "encoder/race_layouts.h"
+#include "encoder/surface/authored_edges.h"
 #include "encoder/surface/clean.h"
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/local_frame.h"
@@ -74,7 +75,9 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     move_into(frame, cleaned.mesh.positions);
     const std::optional<TriangleMesh> moved = moved_into(frame, input);
     const ReferenceSurface reference(cleaned.mesh, options.threads);
-    const Prepared prepared{reference.mesh(), {reference, moved ? *moved : input, frame}, input_report};
+    const AuthoredEdges authored = read_authored_edges(reference.mesh(), cleaned.breaks);
+    input_report.hard_edges = authored.named;
+    const Prepared prepared{reference.mesh(), {reference, moved ? *moved : input, frame}, input_report, authored};
     const Observer local_observer = moved_out_of(frame, observer);
 
     options.rate = resolved_target(options.rate, reference.diagonal());

@@ -18,7 +18,7 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
       clock_(clock),
       observer_(observer),
       drops_colors_(!layout.holds_planes && !options.color_side),
-      tileable_(prepared.mesh) {
+      tileable_(prepared.mesh, prepared.authored) {
     options_.layout = layout.layout;
     if (drops_colors_) options_.color_side = 0;
 }

@@ -24,6 +24,7 @@ struct Prepared {
     const Mesh& mesh;  // clean
     const Original original;
     const EncodeReport& report;  // of the input alone
+    const AuthoredEdges& authored;
 };
 
 class LayoutRuns {

@@ -39,6 +39,7 @@ Made tiles_of(const MakeImages& in) {
     GIM_TRY(tiles, make_tiles(in.tileable.of(in.options.creases), in.mesh, in.options, in.clock));
     in.report.stretch_efficiency = tiles.stretch_efficiency;
     in.report.folds_before_fit = tiles.folds_before_fit;
+    in.report.hard_edges_kept = in.options.creases ? in.tileable.hard_edges() : 0;
     return tiles_layout(std::move(tiles), in.mesh, in.options);
 }
 
@@ -69,7 +70,8 @@ double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageCl
     options.fit = FitStrength::kOff;
     options.density = false;
     if (options.tiles == 0) options.tiles = kUsualTiles;
-    const auto tiles = make_tiles(TileableSurfaces(mesh).of(options.creases), mesh, options, clock);
+    const AuthoredEdges nothing;
+    const auto tiles = make_tiles(TileableSurfaces(mesh, nothing).of(options.creases), mesh, options, clock);
     if (!tiles.ok()) return 0;
     const MadeTiles& made = tiles.value();
     return made.stretch_efficiency * double(made.tiles.positions.size()) / double(made.atlas.positions.size());

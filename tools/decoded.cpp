@@ -142,11 +142,29 @@ std::vector<float> at_samples(const GridMesh& mesh, const std::vector<float>& va
     return result;
 }
 
+namespace {
+
+void add_shading(const std::vector<float>& normals, const std::vector<uint32_t>& triangles, Shading& shading) {
+    const auto base = static_cast<uint32_t>(shading.normals.size());
+    for (size_t i = 0; i + 2 < normals.size(); i += 3)
+        shading.normals.push_back({normals[i], normals[i + 1], normals[i + 2]});
+    for (size_t i = 0; i + 2 < triangles.size(); i += 3)
+        shading.corners.push_back({base + triangles[i], base + triangles[i + 1], base + triangles[i + 2]});
+}
+
+}  // namespace
+
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images) {
+    const bool has_hard_edges =
+        std::any_of(images.begin(), images.end(), [](const DecodedImage& image) { return image.hard.is_there(); });
     TriangleMesh mesh;
     for (const DecodedImage& image : images) {
         const auto base = static_cast<uint32_t>(mesh.positions.size());
         for (size_t v = 0; v < image.positions.size() / 3; ++v) mesh.positions.push_back(image.vertex(v));
+        if (has_hard_edges) {
+            add_shading(image.hard.is_there() ? image.hard.normals : image.normals,
+                        image.hard.is_there() ? image.hard.triangles : image.triangles, mesh.shading);
+        }
         for (size_t i = 0; i + 2 < image.triangles.size(); i += 3) {
             mesh.triangles.push_back(
                 {base + image.triangles[i], base + image.triangles[i + 1], base + image.triangles[i + 2]});

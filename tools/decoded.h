@@ -72,7 +72,7 @@ std::vector<float> at_samples(const GridMesh& mesh, const std::vector<float>& va
 enum class WithPlanes { kNo, kYes };
 Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes = WithPlanes::kNo);
 
-// All images as one mesh with shared vertices.
+// All images as one mesh with shared vertices. It has shading if an image has sharp edges.
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images);
 
 // Describes a status of the decoder and says what to do.

@@ -89,6 +89,10 @@ std::string summary(const EncodeCommand& command, const EncodeReport& report) {
         print_line(format_line("repairs", repairs));
     if (report.topology.components > 1)
         print_line(format_line("components", with_thousands(report.topology.components)));
+    if (report.hard_edges > 0) {
+        print_line(format_line("hard edges", with_thousands(report.hard_edges) + " in the input, " +
+                                                 with_thousands(report.hard_edges_kept) + " kept sharp"));
+    }
     print_line(format_line("layout", name_of(report.layout)));
     for (const LayoutCost& cost : report.others)
         print_line(format_line(("  not " + std::string(name_of(cost.layout))).c_str(), describe_cost(cost)));
@@ -192,7 +196,7 @@ int run_encode(const EncodeCommand& command) {
     if (const auto failure = check_names(command)) return report_error(*failure);
 
     const std::string input_name = shown_name(command.input, Direction::kRead);
-    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory, command.format});
+    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory, command.format, true});
     if (!input.ok()) return report_error(input_name, input.error());
     print_warnings(input_name, input.value().warnings);
 

@@ -101,7 +101,7 @@ Result<Input> read_input(const std::string& path, const ReadOptions& options) {
     }
     const std::string folder = std::filesystem::path(path).parent_path().string();
     Textures textures(folder);
-    ReadContext context{folder, options.want == Want::kShapeAndColors ? &textures : nullptr, memory};
+    ReadContext context{folder, options.want == Want::kShapeAndColors ? &textures : nullptr, memory, options.shading};
     textures.limit_memory(&context.memory);
     Result<TriangleMesh> mesh = read_mesh(bytes, input.format, context);
     if (!mesh.ok()) return mesh.error();

@@ -43,6 +43,7 @@ struct ReadOptions {
     Want want = Want::kShape;
     uint64_t max_memory = default_max_memory();  // bytes that the file and the mesh in it may take
     std::string format = {};                     // an extension that tells the format; empty: the content does
+    bool shading = false;                        // also read TriangleMesh::shading
 };
 
 // Reads the file and decides by options.format, else by content, then by extension. "-" is standard input.

@@ -156,10 +156,13 @@ TriangleMesh weld_equal_positions(const TriangleMesh& mesh) {
         }
     }
     welded.triangles.reserve(mesh.triangles.size());
-    for (const auto& t : mesh.triangles) {
+    welded.shading.normals = mesh.shading.normals;
+    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+        const auto& t = mesh.triangles[f];
         const std::array<uint32_t, 3> corners = {renamed[leader[t[0]]], renamed[leader[t[1]]], renamed[leader[t[2]]]};
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
         welded.triangles.push_back(corners);
+        if (!mesh.shading.empty()) welded.shading.corners.push_back(mesh.shading.corners[f]);
     }
     return welded;
 }

@@ -110,6 +110,14 @@ void add_appearance(const PolygonSoup& soup, size_t f, size_t first, const Local
     }
 }
 
+// The normals of the triangle with these corners of a face. first: index of the face in soup.corners.
+std::array<uint32_t, 3> normals_of(const PolygonSoup& soup, size_t first, const LocalTriangle& local,
+                                   const std::array<uint32_t, 3>& triangle) {
+    const auto& of_corner = soup.corner_normals;
+    if (of_corner.empty()) return triangle;
+    return {of_corner[first + local[0]], of_corner[first + local[1]], of_corner[first + local[2]]};
+}
+
 // Whether a face has another colour than white.
 bool has_tint(const std::vector<std::array<float, 3>>& colors) {
     constexpr std::array<float, 3> kWhite = {1, 1, 1};
@@ -132,14 +140,17 @@ void scale_colors(std::vector<std::array<float, 3>>& colors) {
 }
 
 uint64_t vertex_memory(const ReadContext& context) {
-    return sizeof(std::array<double, 3>) + (context.textures ? sizeof(std::array<float, 3>) : 0);
+    return sizeof(std::array<double, 3>) + (context.textures ? sizeof(std::array<float, 3>) : 0) +
+           (context.shading ? sizeof(std::array<float, 3>) : 0);
 }
 
 uint64_t corner_memory(const ReadContext& context) {
     constexpr uint64_t kShape = sizeof(int64_t) + sizeof(std::array<uint32_t, 3>);  // a triangle each, at most
     constexpr uint64_t kLook = sizeof(Appearance{}.corner_colors[0]) + sizeof(Appearance{}.corner_texcoords[0]) +
                                sizeof(uint32_t) + sizeof(std::array<float, 2>);
-    return kShape + (context.textures ? kLook : 0);
+    // Normals of smoothing groups are made of sorted corners.
+    constexpr uint64_t kShading = 2 * sizeof(uint64_t) + sizeof(std::array<float, 3>) + 3 * sizeof(uint32_t);
+    return kShape + (context.textures ? kLook : 0) + (context.shading ? kShading : 0);
 }
 
 Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& context) {
@@ -186,6 +197,8 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
         for (const LocalTriangle& piece : pieces) {
             mesh.triangles.push_back({face[piece[0]], face[piece[1]], face[piece[2]]});
             if (is_colored) add_appearance(soup, f, first, piece, mesh.triangles.back(), mesh.appearance);
+            if (!soup.normals.empty())
+                mesh.shading.corners.push_back(normals_of(soup, first, piece, mesh.triangles.back()));
         }
         first += size;
     }
@@ -196,6 +209,7 @@ Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context) {
     }
     if (!soup.face_texture.empty()) mesh.appearance.textures = std::move(context.textures->images);
     mesh.positions = std::move(soup.positions);
+    mesh.shading.normals = std::move(soup.normals);
     return mesh;
 }
 

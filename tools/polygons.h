@@ -24,6 +24,10 @@ struct PolygonSoup {
     std::vector<uint32_t> face_texture;                  // index of a texture or UINT32_MAX
     bool colors_tint_textures = false;                   // false: textured faces ignore vertex colours
 
+    // As in Shading. Per entry of `corners` an index into normals or kFlat; empty: each vertex has one normal.
+    std::vector<std::array<float, 3>> normals;
+    std::vector<uint32_t> corner_normals;
+
     void add_face(std::span<const int64_t> face) {
         corners.insert(corners.end(), face.begin(), face.end());
         sizes.push_back(static_cast<uint32_t>(face.size()));
@@ -46,7 +50,8 @@ Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& conte
 // Keeps every vertex and every face in the file's order. Cuts larger faces into triangles inside their outline. Keeps
 // degenerate and repeated triangles, because the encoder cleans them. Leaves faces out that have fewer than three
 // corners (points and lines), with a warning. Fails without vertices or faces. Otherwise an error names the first face
-// that has a corner that is not a vertex. face_texture indexes the textures of the context; the mesh gets them.
+// that has a corner that is not a vertex. face_texture indexes the textures of the context; the mesh gets them. Without normals the
+// mesh gets no shading.
 Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context);
 
 }  // namespace gim

@@ -1,7 +1,7 @@
 // glTF 2 and GLB. Reads every triangle primitive of every mesh instance of the scene, in world coordinates, as the
 // file's own pose shows it: node transforms, instances, default morph weights and skins are applied, animations are
-// not. If colours are wanted, also COLOR_0, base-colour texture with its transform, and base-colour factor. Skips
-// points, lines, and vertices that no triangle uses.
+// not. If colours are wanted, also COLOR_0, base-colour texture with its transform, and base-colour factor. If
+// shading is wanted, also NORMAL; a skin leaves it in its rest pose. Skips points, lines, and vertices that no triangle uses.
 //
 // The JSON is read with nlohmann::json, not with a glTF library. tinygltf 2.7, the one that Debian has, refuses valid
 // files before a caller sees them (accessors without a buffer view, buffers that only a compression fills), reads every
@@ -29,6 +29,7 @@ struct Part {
     uint32_t texture = Textures::kNoTexture;
     std::vector<std::array<float, 2>> texcoords;  // per row; empty without texture
     std::vector<std::array<float, 3>> colors;     // per row; empty if colours are not wanted
+    std::vector<Eigen::Vector3d> normals;         // per row; empty: shading is flat
 };
 
 Part part_of(Primitive& primitive) {
@@ -101,6 +102,7 @@ class Reader {
         Part part = part_of(primitive);
         if (part.corners.empty()) return;
         if (context_.textures) add_colors(primitive, part);
+        if (context_.shading && primitive.has("NORMAL")) add_normals(primitive, part);
         if (pose(instance, primitive, positions, part)) return;
         for (const uint32_t row : part.rows) {
             part.positions.emplace_back(positions.at(row, 0), positions.at(row, 1), positions.at(row, 2));
@@ -149,6 +151,17 @@ class Reader {
         }
     }
 
+    // Normals that do not fit are left out with a warning, since the shape does not need them.
+    void add_normals(Primitive& primitive, Part& part) {
+        try {
+            const MorphedColumn normals = primitive.attribute("NORMAL", 3);
+            for (const uint32_t row : part.rows)
+                part.normals.emplace_back(normals.at(row, 0), normals.at(row, 1), normals.at(row, 2));
+        } catch (const Failure& failure) {
+            warn_once(std::string("normals of the glTF file: ") + failure.what() + "; they are left out");
+        }
+    }
+
     void add_texture(Primitive& primitive, const BaseColor& base, Part& part) {
         const std::string set = "TEXCOORD_" + std::to_string(base.texcoord_set);
         if (!base.texture || !primitive.has(set)) return;
@@ -174,11 +187,22 @@ class Reader {
             const Eigen::Vector3d p = transform * position;
             soup_.positions.push_back({p.x(), p.y(), p.z()});
         }
+        // The cofactors turn normals as the transform turns surfaces, but for the sign of a mirror.
+        const Eigen::Matrix3d& m = transform.linear();
+        Eigen::Matrix3d cofactors;
+        for (int k = 0; k < 3; ++k) cofactors.col(k) = m.col((k + 1) % 3).cross(m.col((k + 2) % 3));
+        const auto first_normal = static_cast<uint32_t>(soup_.normals.size());
+        for (const Eigen::Vector3d& normal : part.normals) {
+            const Eigen::Vector3d n = (cofactors * normal).stableNormalized() * (mirrored ? -1 : 1);
+            soup_.normals.push_back({static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())});
+        }
         soup_.vertex_colors.insert(soup_.vertex_colors.end(), part.colors.begin(), part.colors.end());
         for (size_t i = 0; i < part.corners.size(); i += 3) {
             std::array<uint32_t, 3> face = {part.corners[i], part.corners[i + 1], part.corners[i + 2]};
             if (mirrored) std::swap(face[1], face[2]);
             soup_.add_face(std::array<int64_t, 3>{base + face[0], base + face[1], base + face[2]});
+            for (size_t k = 0; k < 3 && context_.shading; ++k)
+                soup_.corner_normals.push_back(part.normals.empty() ? Shading::kFlat : first_normal + face[k]);
             if (!context_.textures) continue;
             soup_.face_texture.push_back(part.texture);
             for (const uint32_t corner : face) {

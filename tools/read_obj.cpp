@@ -1,5 +1,6 @@
 // Wavefront OBJ. Reads "v" and "f" lines. If colours are wanted, also "vt", the colours that some programs append to
-// "v", and of materials the map_Kd textures and the Kd colours. Skips everything else (normals, groups, lines).
+// "v", and of materials the map_Kd textures and the Kd colours. If shading is wanted, also "vn" and, without normals, the
+// smoothing groups "s". Skips everything else (other groups, lines).
 #include <algorithm>
 #include <array>
 #include <string>
@@ -9,6 +10,7 @@
 #include "tools/mesh_read.h"
 #include "tools/polygons.h"
 #include "tools/read_mtl.h"
+#include "tools/smoothing_groups.h"
 #include "tools/text_scanner.h"
 
 namespace gim {
@@ -79,6 +81,10 @@ class Reader {
                 read = read_face(line);
             } else if (keyword == "curv" || keyword == "surf") {
                 has_free_forms_ = true;
+            } else if (context_.shading && keyword == "vn") {
+                read = read_normal();
+            } else if (context_.shading && keyword == "s") {
+                smoothing_group_ = smoothing_group_named(in_.word_on_line());
             } else if (textures_ && read_look(keyword)) {
                 continue;  // on the next line already
             }
@@ -89,6 +95,7 @@ class Reader {
             return Error{Stage::kInput, "it has no 'v' and no 'f' lines"};
         }
         if (has_free_forms_) context_.warn("its free-form curves and surfaces are left out");
+        if (context_.shading) resolve_shading();
         if (!textures_) return triangulate(std::move(soup_), context_);
         soup_.vertex_colors = colors_.take(context_);
         resolve_materials();
@@ -122,6 +129,7 @@ class Reader {
                 return at_line(line, "'" + std::string(word.substr(0, 40)) + "' is not a vertex index of a face");
             }
             if (textures_) soup_.corner_texcoords.push_back(texcoord_of(word));
+            if (context_.shading) soup_.corner_normals.push_back(normal_of(word));
             // 1 is the first vertex of the file, -1 the latest one.
             face_.push_back(*index > 0 ? *index - 1 : static_cast<int64_t>(soup_.positions.size()) + *index);
         }
@@ -129,6 +137,7 @@ class Reader {
             return at_line(line, "the file ends inside a face (is it cut short?)");
         if (Result<void> fits = take(0, face_.size()); !fits.ok()) return fits;
         soup_.add_face(face_);
+        if (context_.shading) smoothing_groups_.push_back(smoothing_group_);
         if (textures_) face_material_.push_back(material_);
         return {};
     }
@@ -137,6 +146,41 @@ class Reader {
         const uint64_t bytes = vertices * vertex_memory(context_) + corners * corner_memory(context_);
         if (context_.memory.try_take(bytes)) return {};
         return context_.memory.over_limit("its vertices and faces take memory");
+    }
+
+    Result<void> read_normal() {
+        std::array<float, 3> normal = {};  // what is no number counts as 0
+        for (float& n : normal) n = static_cast<float>(parse_real(in_.word_on_line()).value_or(0));
+        if (!context_.memory.try_take(sizeof(normal))) return context_.memory.over_limit("its normals take memory");
+        soup_.normals.push_back(normal);
+        return {};
+    }
+
+    // Returns the normal of a corner "vertex/texcoord/normal", kFlat if it has none. It may stand further down.
+    uint32_t normal_of(std::string_view word) {
+        const size_t first = word.find('/');
+        const size_t second = first == std::string_view::npos ? first : word.find('/', first + 1);
+        if (second == std::string_view::npos || second + 1 == word.size()) return Shading::kFlat;
+        has_normals_ = true;
+        const std::optional<int64_t> index = parse_integer(word.substr(second + 1));
+        const auto count = static_cast<int64_t>(soup_.normals.size());
+        const int64_t i = !index || *index == 0 ? -1 : *index > 0 ? *index - 1 : count + *index;
+        return i >= 0 && i < kNoNormal ? static_cast<uint32_t>(i) : kNoNormal;
+    }
+
+    // Normals win over smoothing groups.
+    void resolve_shading() {
+        const auto& of_corner = soup_.corner_normals;
+        const auto is_missing = [&](uint32_t n) { return n != Shading::kFlat && n >= soup_.normals.size(); };
+        const auto missing = std::count_if(of_corner.begin(), of_corner.end(), is_missing);
+        if (missing > 0) {
+            context_.warn("corners of faces use normals that do not exist, " + std::to_string(missing) +
+                          " in all; hard edges are found by the shape alone");
+        }
+        if (has_normals_ && missing == 0) return;
+        soup_.normals.clear();
+        soup_.corner_normals.clear();
+        if (!has_normals_) add_group_normals(smoothing_groups_, soup_);
     }
 
     // Reads a line that tells the look and goes on to the next one. False if it is none.
@@ -200,6 +244,7 @@ class Reader {
     }
 
     static constexpr uint32_t kNoMaterial = UINT32_MAX;
+    static constexpr uint32_t kNoNormal = Shading::kFlat - 1;  // an index that is none
 
     TextScanner in_;
     ReadContext& context_;
@@ -213,6 +258,9 @@ class Reader {
     std::vector<std::string> material_names_;                   // as "usemtl" gives them
     std::vector<uint32_t> face_material_;                       // index of a name
     uint32_t material_ = kNoMaterial;
+    std::vector<uint32_t> smoothing_groups_;  // per face
+    uint32_t smoothing_group_ = 0;
+    bool has_normals_ = false;
     std::vector<int64_t> face_;
     bool has_free_forms_ = false;
 };

@@ -1,7 +1,7 @@
 // PLY: ascii, binary_little_endian, binary_big_endian, with any property types. Skips unknown elements and properties.
 // Reads the faces' vertex_indices (or vertex_index), or the strips of a tristrips element. If colours are wanted, also
 // red, green, blue of the vertices or else of the faces, and texture coordinates of vertices (u v, s t, texture_u texture_v) or of face
-// corners (texcoord, texnumber) for the images that "comment TextureFile" names.
+// corners (texcoord, texnumber) for the images that "comment TextureFile" names. If shading is wanted, also nx, ny, nz of the vertices.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,22 +37,26 @@ void add_strips(const std::vector<int64_t>& strip, PolygonSoup& soup) {
     }
 }
 
-enum class Role { kNone, kX, kY, kZ, kRed, kGreen, kBlue, kU, kV, kTexture };
+enum class Role { kNone, kX, kY, kZ, kRed, kGreen, kBlue, kU, kV, kTexture, kNormalX, kNormalY, kNormalZ };
+constexpr size_t kRoles = static_cast<size_t>(Role::kNormalZ) + 1;
 
 Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
     struct Entry {
         std::string_view name;
         Role role;
     };
-    static constexpr std::array<Entry, 9> kVertexRoles = {{{"x", Role::kX},
-                                                           {"y", Role::kY},
-                                                           {"z", Role::kZ},
-                                                           {"u", Role::kU},
-                                                           {"v", Role::kV},
-                                                           {"s", Role::kU},
-                                                           {"t", Role::kV},
-                                                           {"texture_u", Role::kU},
-                                                           {"texture_v", Role::kV}}};
+    static constexpr std::array<Entry, 12> kVertexRoles = {{{"x", Role::kX},
+                                                            {"y", Role::kY},
+                                                            {"z", Role::kZ},
+                                                            {"u", Role::kU},
+                                                            {"v", Role::kV},
+                                                            {"s", Role::kU},
+                                                            {"t", Role::kV},
+                                                            {"texture_u", Role::kU},
+                                                            {"texture_v", Role::kV},
+                                                            {"nx", Role::kNormalX},
+                                                            {"ny", Role::kNormalY},
+                                                            {"nz", Role::kNormalZ}}};
     static constexpr std::array<Entry, 9> kColorRoles = {{{"red", Role::kRed},
                                                           {"green", Role::kGreen},
                                                           {"blue", Role::kBlue},
@@ -67,7 +71,8 @@ Role role_of(std::string_view name, bool is_vertex, bool wants_colors) {
     }
     if (!is_vertex) return wants_colors && name == "texnumber" ? Role::kTexture : Role::kNone;
     for (const Entry& entry : kVertexRoles) {
-        if (entry.name == name && (wants_colors || entry.role <= Role::kZ)) return entry.role;
+        const bool is_color = entry.role > Role::kZ && entry.role < Role::kNormalX;
+        if (entry.name == name && (wants_colors || !is_color)) return entry.role;
     }
     return Role::kNone;
 }
@@ -113,8 +118,8 @@ void add_textures(const Header& header, const std::vector<std::array<float, 2>>&
 // Which properties of an element the mesh takes.
 struct Columns {
     bool is_vertex = false, is_face = false, is_strip = false;
-    bool has_position = false, has_texcoords = false;  // of vertices
-    bool has_colors = false;                           // of vertices or faces
+    bool has_position = false, has_texcoords = false, has_normals = false;  // of vertices
+    bool has_colors = false;                                                // of vertices or faces
     Scalar color_type = Scalar::kNone;
     std::vector<Role> roles;  // per property; kNone for lists
 };
@@ -137,15 +142,18 @@ Columns columns_of(const Element& element, bool wants_colors) {
     if (!columns.is_vertex) return columns;
     columns.has_position = has_roles(columns.roles, {Role::kX, Role::kY, Role::kZ});
     columns.has_texcoords = has_roles(columns.roles, {Role::kU, Role::kV});
+    columns.has_normals = has_roles(columns.roles, {Role::kNormalX, Role::kNormalY, Role::kNormalZ});
     return columns;
 }
 
 // Reads the body, element by element, into a soup.
 class Reader {
   public:
-    // textures: null if colours are not wanted.
-    Reader(const Header& header, std::string_view body, Records records, Textures* textures)
-        : header_(header), body_(body, header.encoding, records), textures_(textures) {}
+    Reader(const Header& header, std::string_view body, Records records, const ReadContext& context)
+        : header_(header),
+          body_(body, header.encoding, records),
+          textures_(context.textures),
+          wants_shading_(context.shading) {}
 
     Result<void> read_all() {
         for (const Element& element : header_.elements) {
@@ -166,6 +174,7 @@ class Reader {
 
     Result<TriangleMesh> mesh(ReadContext& context) && {
         if (!has_coordinates_) return Error{Stage::kInput, "its header has no vertices with x, y and z"};
+        if (soup_.normals.size() != soup_.positions.size()) soup_.normals.clear();
         if (!textures_) return triangulate(std::move(soup_), context);
         if (soup_.sizes.size() == face_texture_.size())
             add_textures(header_, vertex_texcoords_, face_texture_, *textures_, soup_);
@@ -248,6 +257,11 @@ class Reader {
     void keep_vertex(const Columns& columns) {
         soup_.positions.push_back({value_of(Role::kX), value_of(Role::kY), value_of(Role::kZ)});
         if (columns.has_colors) keep_color(soup_.vertex_colors);
+        if (columns.has_normals && wants_shading_) {
+            soup_.normals.push_back({static_cast<float>(value_of(Role::kNormalX)),
+                                     static_cast<float>(value_of(Role::kNormalY)),
+                                     static_cast<float>(value_of(Role::kNormalZ))});
+        }
         if (columns.has_texcoords) {
             vertex_texcoords_.push_back(
                 {static_cast<float>(value_of(Role::kU)), static_cast<float>(1 - value_of(Role::kV))});
@@ -263,7 +277,8 @@ class Reader {
 
     const Header& header_;
     Body body_;
-    Textures* textures_;
+    Textures* textures_;  // null if colours are not wanted
+    bool wants_shading_;
     PolygonSoup soup_;
     std::vector<std::array<float, 2>> vertex_texcoords_;  // v downwards
     std::vector<uint32_t> face_texture_;                  // index into Header::textures
@@ -271,9 +286,9 @@ class Reader {
     Scalar vertex_color_type_ = Scalar::kNone, face_color_type_ = Scalar::kNone;
 
     // The current record.
-    std::array<double, 10> values_ = {};  // by role
-    std::vector<int64_t> list_;           // corners of a face or strip
-    std::vector<float> texcoords_;        // of a face
+    std::array<double, kRoles> values_ = {};  // by role
+    std::vector<int64_t> list_;               // corners of a face or strip
+    std::vector<float> texcoords_;            // of a face
 };
 
 // Counts of the header are checked before any memory is taken for them.
@@ -303,13 +318,13 @@ Result<TriangleMesh> read_ply(std::string_view text, ReadContext& context) {
     if (const Result<void> counts = check_counts(header, text, context); !counts.ok()) return counts.error();
 
     const std::string_view body = text.substr(header.size);
-    Reader words(header, body, Records::kWords, context.textures);
+    Reader words(header, body, Records::kWords, context);
     const Result<void> read = words.read_all();
     if (header.encoding != Encoding::kAscii || (read.ok() && words.is_sound())) {
         return read.ok() ? std::move(words).mesh(context) : read.error();
     }
     // Perhaps lines have more numbers than the header says.
-    Reader lines(header, body, Records::kLines, context.textures);
+    Reader lines(header, body, Records::kLines, context);
     if (!lines.read_all().ok() || lines.dropped_lines() == 0) {
         return read.ok() ? std::move(words).mesh(context) : read.error();
     }

@@ -32,6 +32,7 @@ add_library(gim_readers STATIC
     ${folder}/read_off.cpp
     ${folder}/read_ply.cpp
     ${folder}/read_stl.cpp
+    ${folder}/smoothing_groups.cpp
     ${folder}/stb.cpp
     ${folder}/text_scanner.cpp
     ${folder}/textures.cpp

@@ -78,8 +78,14 @@ Matrix3d camera_axes(const View& view, const Vector3d& extent) {
     return about_right * about_up * turn;
 }
 
-// Area-weighted vertex normals in camera axes.
-std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const std::vector<Vector3d>& seen) {
+// The mesh's own normals, or else area-weighted vertex normals, in camera axes.
+std::vector<Vector3d> smooth_normals(const TriangleMesh& mesh, const Matrix3d& axes,
+                                     const std::vector<Vector3d>& seen) {
+    if (!mesh.shading.empty()) {
+        std::vector<Vector3d> own;
+        for (const auto& n : mesh.shading.normals) own.push_back(axes * Eigen::Vector3f(n.data()).cast<double>());
+        return own;
+    }
     std::vector<Vector3d> normals(seen.size(), Vector3d::Zero());
     for (const auto& t : mesh.triangles) {
         const Vector3d area = (seen[t[1]] - seen[t[0]]).cross(seen[t[2]] - seen[t[0]]);
@@ -111,7 +117,7 @@ Vector3d shade(Vector3d normal, const Vector3d& colour) {
 struct Scene {
     std::vector<Vector3d> seen;     // in camera axes, centred, the model's radius is 1
     std::vector<Vector2d> pixels;   // in samples of the canvas
-    std::vector<Vector3d> normals;  // empty if shading is flat
+    std::vector<Vector3d> normals;  // of vertices, or the mesh's own; empty if shading is flat
 
     bool empty() const { return seen.empty(); }
     Corner corner(uint32_t v) const {
@@ -154,7 +160,7 @@ Scene look_at(const TriangleMesh& mesh, const View& view, uint32_t side) {
     const Vector3d centre = 0.5 * (bounds.low + bounds.high);
     scene.seen.resize(mesh.positions.size());
     for (uint32_t v = 0; v < scene.seen.size(); ++v) scene.seen[v] = axes * (at(mesh, v) - centre) / radius;
-    if (!view.flat) scene.normals = smooth_normals(mesh, scene.seen);
+    if (!view.flat) scene.normals = smooth_normals(mesh, axes, scene.seen);
     project(mesh, side, scene);
     return scene;
 }
@@ -167,8 +173,10 @@ void draw_surface(const TriangleMesh& mesh, const Scene& scene, bool wire, const
         if (!is_finite(mesh, t)) continue;
         const Vector3d facet = (scene.seen[t[1]] - scene.seen[t[0]]).cross(scene.seen[t[2]] - scene.seen[t[0]]);
         std::array<Vector3d, 3> normal = {facet, facet, facet};
+        const auto& n = mesh.shading.empty() ? t : mesh.shading.corners[f];
         for (size_t k = 0; k < 3 && !scene.normals.empty(); ++k) {
-            if (scene.normals[t[k]].norm() > 0) normal[k] = scene.normals[t[k]].normalized();
+            if (n[k] == Shading::kFlat || !scene.normals[n[k]].allFinite()) continue;
+            if (scene.normals[n[k]].norm() > 0) normal[k] = scene.normals[n[k]].normalized();
         }
         // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
         const bool front = facet.dot(Vector3d(0, 0, kDistance) - scene.seen[t[0]]) >= 0;

@@ -76,7 +76,7 @@ int run_render(const RenderCommand& command) {
         return report_error(command.output, {Stage::kWrite, "must end in .png"});
     const std::string input_name = shown_name(command.input, Direction::kRead);
     const std::string output_name = shown_name(command.output, Direction::kWrite);
-    const ReadOptions how = {Want::kShape, command.max_memory, command.format};
+    const ReadOptions how = {Want::kShape, command.max_memory, command.format, true};
     const Result<TriangleMesh> mesh = read_surface_aloud(command.input, command.gim.empty() ? command.level : 0, how);
     if (!mesh.ok()) return report_error(input_name, mesh.error());
     std::optional<TriangleMesh> reference;

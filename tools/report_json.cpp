@@ -121,6 +121,8 @@ ordered_json to_json(const EncodeReport& report) {
             {"repairs", to_json(report.repairs)},
             {"warnings", report.warnings},
             {"topology", to_json(report.topology)},
+            {"hard_edges", report.hard_edges},
+            {"hard_edges_kept", report.hard_edges_kept},
             {"layout", name_of(report.layout)},
             {"others", others},
             {"images", report.images},

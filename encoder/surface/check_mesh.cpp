@@ -12,6 +12,20 @@ namespace {
 
 Error error(std::string message) { return Error{Stage::kClean, std::move(message)}; }
 
+Result<void> check_shading(const TriangleMesh& input) {
+    const Shading& shading = input.shading;
+    if (shading.empty()) return {};
+    if (shading.corners.size() != input.triangles.size())
+        return error("the mesh's normals must have one entry per triangle, or none at all");
+    for (const auto& corners : shading.corners) {
+        for (const uint32_t n : corners) {
+            if (n != Shading::kFlat && n >= shading.normals.size())
+                return error("a corner of a triangle has a normal that is not there");
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> check_numbers(const TriangleMesh& input) {
@@ -48,7 +62,7 @@ Result<void> check_numbers(const TriangleMesh& input) {
                      std::to_string(t[0]) + ", " + std::to_string(t[1]) + ", " + std::to_string(t[2]) +
                      ") of a mesh of " + std::to_string(input.positions.size()) + " vertices; the file is damaged");
     }
-    return {};
+    return check_shading(input);
 }
 
 }  // namespace gim

@@ -12,6 +12,7 @@
 #include "encoder/surface/flip_slivers.h"
 #include "encoder/surface/join_surface.h"
 #include "encoder/surface/make_simplicial.h"
+#include "encoder/surface/normal_breaks.h"
 #include "encoder/surface/orient_faces.h"
 #include "encoder/surface/repair_warnings.h"
 
@@ -108,6 +109,7 @@ Result<CleanMesh> clean(const TriangleMesh& input, const CleanOptions& options) 
     if (made.mesh.triangles.empty())
         return error("every triangle of the mesh is a line, but for rounding; the surface has no area");
     if (slivers.dropped > 0) renumber(made);
+    made.breaks = find_breaks(input, surface.place, made.mesh, made.source_vertex);
 
     made.report.topology = analyse_topology(made.mesh.triangles, made.mesh.positions.size()).summary;
     if (options.require_connected && made.report.topology.components > 1)

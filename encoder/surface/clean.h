@@ -27,10 +27,11 @@ struct CleanReport {
 struct CleanMesh {
     Mesh mesh;                            // oriented 2-manifold without unreferenced vertices
     std::vector<uint32_t> source_vertex;  // per vertex: its (first) index in the input; a new vertex has a neighbour's
+    std::vector<float> breaks;  // per half-edge, as normal_breaks.h finds them; empty: the input has no normals
     CleanReport report;
 };
 
-// In:  finite positions, and triangles that index them. Otherwise returns an Error.
+// In:  finite positions, triangles that index them, and normals that fit. Otherwise returns an Error.
 // Out: an oriented manifold, connected if the options require it. Each component keeps the side that most of its faces
 //      show, so cavities stay cavities. A closed component whose faces disagree much faces outwards.
 //

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "encoder/base/disjoint_sets.h"
+#include "encoder/surface/sharp_lines.h"
 
 namespace gim {
 
@@ -22,10 +23,6 @@ constexpr double kBeside = 0.4, kBesideGap = 0.7;
 constexpr int kMostEdges = 6, kMostBends = 2;
 // A line of sharp edges turns by at most this angle where it goes on with a smaller angle between faces.
 constexpr double kLeastStraight = 0.5;  // cosine
-// Connected sharp edges have at least this length, in bounding-box diagonals of the component, if they have loose ends
-// or if they have none, and so many edges for each loose end.
-constexpr double kLeastLength = 0.25, kLeastLoop = 0.02;
-constexpr uint32_t kEdgesPerEnd = 4;
 // Of all edges of a component that are bent so much, at least this part, by length, is sharp in the end. Less is chance.
 constexpr double kLeastPart = 0.25;
 
@@ -35,13 +32,16 @@ class SharpEdges {
         : mesh_(mesh), topology_(build_topology(mesh)), surfaces_(mesh.positions.size()) {
         for (uint32_t f = 0; f < mesh.triangles.size(); ++f) normals_.push_back(normal_of(f));
         angle_.resize(topology_.twin.size());
-        for (uint32_t h = 0; h < angle_.size(); ++h) angle_[h] = angle_at(h);
+        for (uint32_t h = 0; h < angle_.size(); ++h) {
+            angle_[h] = angle_at(h);
+            surfaces_.unite(from(mesh, h), to(mesh, h));
+        }
     }
 
     std::vector<bool> find() {
         find_strong();
         continue_lines();
-        drop_short_lines();
+        drop_short_lines(mesh_, topology_, sharp_);
         drop_chance();
         return std::move(sharp_);
     }
@@ -72,11 +72,8 @@ class SharpEdges {
     void mark(uint32_t h) { sharp_[h] = sharp_[topology_.twin[h]] = true; }
     void find_strong();
     void continue_lines();
-    struct Sums;
-    void drop_short_lines();
     void drop_chance();
     double length_of(uint32_t h) const;
-    std::vector<double> diagonals(DisjointSets& surfaces) const;
     bool continues(uint32_t h, uint32_t vertex) const;
 
     const Mesh& mesh_;
@@ -168,58 +165,8 @@ void SharpEdges::continue_lines() {
     }
 }
 
-// Sums over connected edges: the vertex that stands for them has the values.
-struct SharpEdges::Sums {
-    DisjointSets sets;
-    std::vector<double> length;
-    std::vector<uint32_t> edges, ends;
-
-    explicit Sums(size_t vertices) : sets(vertices), length(vertices), edges(vertices), ends(vertices) {}
-};
-
 double SharpEdges::length_of(uint32_t h) const {
     return (mesh_.positions[to(mesh_, h)] - mesh_.positions[from(mesh_, h)]).norm();
-}
-
-// Returns the bounding-box diagonal of each component, at the vertex that stands for it.
-std::vector<double> SharpEdges::diagonals(DisjointSets& surfaces) const {
-    const size_t count = mesh_.positions.size();
-    std::vector<Vec3> low(count, Vec3::Constant(HUGE_VAL)), high(count, Vec3::Constant(-HUGE_VAL));
-    for (uint32_t v = 0; v < count; ++v) {
-        const uint32_t s = surfaces.find(v);
-        low[s] = low[s].cwiseMin(mesh_.positions[v]);
-        high[s] = high[s].cwiseMax(mesh_.positions[v]);
-    }
-    std::vector<double> result(count);
-    for (uint32_t v = 0; v < count; ++v) result[v] = (high[v] - low[v]).norm();
-    return result;
-}
-
-void SharpEdges::drop_short_lines() {
-    Sums lines(mesh_.positions.size());
-    std::vector<uint32_t> degree(mesh_.positions.size(), 0);
-    for (uint32_t h = 0; h < angle_.size(); ++h) {
-        surfaces_.unite(from(mesh_, h), to(mesh_, h));
-        if (!sharp_[h] || !is_owner(h)) continue;
-        lines.sets.unite(from(mesh_, h), to(mesh_, h));
-        ++degree[from(mesh_, h)];
-        ++degree[to(mesh_, h)];
-    }
-    for (uint32_t v = 0; v < degree.size(); ++v) lines.ends[lines.sets.find(v)] += degree[v] == 1;
-    for (uint32_t h = 0; h < angle_.size(); ++h) {
-        if (!sharp_[h] || !is_owner(h)) continue;
-        const uint32_t line = lines.sets.find(from(mesh_, h));
-        ++lines.edges[line];
-        lines.length[line] += length_of(h);
-    }
-    const std::vector<double> diagonal = diagonals(surfaces_);
-    for (uint32_t h = 0; h < angle_.size(); ++h) {
-        if (!sharp_[h]) continue;
-        const uint32_t line = lines.sets.find(from(mesh_, h));
-        const double least =
-            (lines.ends[line] > 0 ? kLeastLength : kLeastLoop) * diagonal[surfaces_.find(from(mesh_, h))];
-        sharp_[h] = lines.length[line] >= least && lines.edges[line] >= kEdgesPerEnd * lines.ends[line];
-    }
 }
 
 void SharpEdges::drop_chance() {

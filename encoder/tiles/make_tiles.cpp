@@ -10,7 +10,6 @@
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/density.h"
 #include "encoder/surface/closest_point.h"
-#include "encoder/surface/sharp_edges.h"
 #include "encoder/surface/stretch.h"
 #include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/crease_rails.h"
@@ -128,7 +127,7 @@ TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases
 }
 
 const std::vector<bool>& TileableSurfaces::creases() {
-    if (!creases_) creases_ = sharp_edges(mesh_);
+    if (!creases_) creases_ = creases_of(mesh_, authored_);
     return *creases_;
 }
 

@@ -9,6 +9,7 @@
 #include "encoder/base/stage_clock.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/image/rails.h"
+#include "encoder/surface/authored_edges.h"
 #include "encoder/surface/mesh.h"
 #include "encoder/tiles/tile_base.h"
 #include "encoder/tiles/tile_image.h"
@@ -27,16 +28,18 @@ TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases
 // A surface for all runs, with its creases and without. Each is made when it is asked for first.
 class TileableSurfaces {
   public:
-    // Keeps a reference to the mesh.
-    explicit TileableSurfaces(const Mesh& mesh) : mesh_(mesh) {}
+    // Keeps references to its arguments. authored: what the input's normals say of the mesh's edges.
+    TileableSurfaces(const Mesh& mesh, const AuthoredEdges& authored) : mesh_(mesh), authored_(authored) {}
 
     bool has_creases();
+    uint64_t hard_edges() const { return authored_.kept; }  // of the creases, those that the input's normals name
     const TileableSurface& of(bool with_creases);
 
   private:
     const std::vector<bool>& creases();
 
     const Mesh& mesh_;
+    const AuthoredEdges& authored_;
     std::optional<std::vector<bool>> creases_;
     std::optional<TileableSurface> creased_, smooth_;
 };

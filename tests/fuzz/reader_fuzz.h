@@ -31,6 +31,13 @@ inline void check(const Result<TriangleMesh>& read) {
     for (const uint32_t t : look.triangle_texture) {
         if (t != UINT32_MAX && t >= look.textures.size()) __builtin_trap();
     }
+    const Shading& shading = mesh.shading;
+    if (!shading.empty() && shading.corners.size() != count) __builtin_trap();
+    for (const auto& corners : shading.corners) {
+        for (const uint32_t n : corners) {
+            if (n != Shading::kFlat && n >= shading.normals.size()) __builtin_trap();
+        }
+    }
     for (const auto& corners : look.corner_colors) {
         for (const auto& color : corners) {
             for (const float c : color) {
@@ -40,7 +47,7 @@ inline void check(const Result<TriangleMesh>& read) {
     }
 }
 
-// Reads the bytes as this format, as a shape and with colours. There are no files beside it.
+// Reads the bytes as this format, as a shape, and with colours and normals. There are no files beside it.
 inline void read_as(MeshFormat format, const uint8_t* data, size_t size) {
     for (const bool colors : {false, true}) {
         const std::string nowhere = "/nonexistent";
@@ -50,6 +57,7 @@ inline void read_as(MeshFormat format, const uint8_t* data, size_t size) {
         Textures textures(nowhere);
         textures.limit_memory(&context.memory);
         if (colors) context.textures = &textures;
+        context.shading = colors;
         check(read_mesh({data, size}, format, context));
     }
     (void)detect_format({data, size}, "");

@@ -75,11 +75,27 @@ struct Appearance {
     bool empty() const { return corner_colors.empty() && (textures.empty() || triangle_texture.empty()); }
 };
 
+// The normals with which authors want a mesh shaded. An edge is hard where those of its two triangles differ: tiles keep
+// it sharp. Nothing else of them is used. So a mesh whose every vertex has one normal, and a mesh whose every triangle
+// has its own (flat shading), tell nothing; then the encoder finds sharp edges by the shape alone, as without normals.
+// Vertices at one place count as one: a hard edge may repeat its vertices, as engines want them, or share them.
+struct Shading {
+    static constexpr uint32_t kFlat = UINT32_MAX;
+
+    std::vector<std::array<float, 3>> normals;  // outwards, of any length; 0 0 0 differs from no other
+    // Per triangle, an index into `normals` for each corner; kFlat: that of the triangle. Empty: nothing is known. For
+    // one normal per vertex, these are the mesh's triangles.
+    std::vector<std::array<uint32_t, 3>> corners;
+
+    bool empty() const { return corners.empty(); }
+};
+
 // A triangle soup or mesh as read from a file. Triangles index into `positions`. Coordinates may have any unit.
 struct TriangleMesh {
     std::vector<std::array<double, 3>> positions;
     std::vector<std::array<uint32_t, 3>> triangles;
     Appearance appearance = {};
+    Shading shading = {};
 };
 
 // Called at the start of each stage and during long stages. `fraction` is 0..1 within the stage. Calls never overlap.
@@ -214,7 +230,7 @@ struct EncodeOptions {
     // kTiles: wanted number of tiles; 0: chosen by the encoder. More are made if topology needs them.
     uint32_t tiles = 0;
     // kTiles: sharp edges of the surface become borders of tiles, unless the target is searched for and the file is smaller
-    // without.
+    // without. They are the hard edges of TriangleMesh::shading if that tells any, else those that the shape shows.
     bool creases = true;
     // kGim: side of the grid on which cut-nodes lie; more than `side` counts as `side`. All levels down to this side are
     // closed. The encoder takes a finer grid if the cut does not fit whole units of this one.
@@ -299,6 +315,8 @@ struct EncodeReport {
     Repairs repairs;                                   // by cleaning
     std::vector<std::string> warnings;                 // for people, a line each
     TopologySummary topology;                          // of the cleaned mesh
+    uint64_t hard_edges = 0;                           // of the cleaned mesh, by TriangleMesh::shading
+    uint64_t hard_edges_kept = 0;                      // kTiles: those of them that tiles keep sharp
     Layout layout = Layout::kGim;                      // the one used; never kAuto
     std::vector<LayoutCost> others;                    // kAuto, lossy: the layouts that lost
     uint32_t images = 0;                               // kGim: one per component; else 1
