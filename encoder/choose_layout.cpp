@@ -4,11 +4,10 @@
 
 namespace gim {
 
-Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, bool with_planes, StageClock& clock) {
+Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
     Layout best = all_layouts().front().layout;
     double most = 0;
     for (const LayoutEntry& entry : all_layouts()) {
-        if (with_planes && !entry.holds_planes) continue;
         const double efficiency = entry.efficiency(mesh, options, clock);
         if (efficiency <= most) continue;
         best = entry.layout;

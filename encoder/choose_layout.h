@@ -9,8 +9,8 @@ namespace gim {
 
 // All layouts take about the same bytes per sample, so the one with most effective samples wins. Effective samples are
 // samples times stretch efficiency (Sander et al. 2003, section 5: what charts gain over one square). All parametrizations
-// are made for this; none is fitted. Layouts that cannot hold the planes that are wanted are left out.
+// are made for this; none is fitted.
 // Cost: seconds. `mesh` must be clean.
-Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, bool with_planes, StageClock& clock);
+Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock& clock);
 
 }  // namespace gim

@@ -13,7 +13,6 @@
 #include "encoder/layout_runs.h"
 #include "encoder/layouts.h"
 #include "encoder/planes/input_colors.h"
-#include "encoder/planes/make_planes.h"
 #include "encoder/race_layouts.h"
 #include "encoder/surface/authored_edges.h"
 #include "encoder/surface/clean.h"
@@ -35,8 +34,7 @@ void describe_input(const TriangleMesh& input, const CleanMesh& cleaned, EncodeR
 // The layout that suits the surface, or the next one that can make images of it.
 Result<Encoded> encode_losslessly(const Prepared& prepared, const EncodeOptions& options, StageClock& clock,
                                   const Observer& observer) {
-    const bool with_planes = wants_planes(prepared.original.input, options);
-    const Layout preferred = choose_layout(prepared.mesh, options, with_planes, clock);
+    const Layout preferred = choose_layout(prepared.mesh, options, clock);
     auto encoded = LayoutRuns(*find_layout(preferred), prepared, options, clock, observer).best({});
     for (const LayoutEntry& other : all_layouts()) {
         if (!lacks_images(encoded) || other.layout == preferred) continue;

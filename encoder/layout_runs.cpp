@@ -17,18 +17,14 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
       options_(options),
       clock_(clock),
       observer_(observer),
-      drops_colors_(!layout.holds_planes && !options.color_side),
       tileable_(prepared.mesh, prepared.authored) {
     options_.layout = layout.layout;
-    if (drops_colors_) options_.color_side = 0;
 }
 
 Result<LayoutRuns::Started*> LayoutRuns::start(const EncodeOptions& now) {
     Started& started = started_[variant_of(now)];
     if (started.run) return &started;
     EncodeReport report = prepared_.report;
-    if (drops_colors_ && !prepared_.original.input.appearance.empty())
-        report.warnings.push_back("tiles hold no colours; those of the input are left out");
     const bool may_grow = now.side == options_.side;  // smaller sides are trials
     const Observer observer = std::exchange(observer_, {});
     GIM_TRY(images, layout_.make({prepared_.mesh, now, clock_, observer, report, cuts_, tileable_, may_grow}));

@@ -60,8 +60,7 @@ class LayoutRuns {
     const Prepared& prepared_;
     EncodeOptions options_;
     StageClock& clock_;
-    Observer observer_;  // none when it has seen images
-    bool drops_colors_;
+    Observer observer_;                   // none when it has seen images
     CutPreferences cuts_;                 // chosen at the first side, then kept
     TileableSurfaces tileable_;           // serve every number of tiles
     std::map<Variant, Started> started_;  // that did not end yet

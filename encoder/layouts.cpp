@@ -33,8 +33,6 @@ Made charts_of(const MakeImages& in) {
 }
 
 Made tiles_of(const MakeImages& in) {
-    if (in.options.normal_side > 0 || in.options.color_side.value_or(0) > 0)
-        return Error{Stage::kInput, "tiles hold no normals and no colours; leave them out, or take --layout gim"};
     in.clock.begin(Stage::kCut);
     GIM_TRY(tiles, make_tiles(in.tileable.of(in.options.creases), in.mesh, in.options, in.clock));
     in.report.stretch_efficiency = tiles.stretch_efficiency;
@@ -78,9 +76,9 @@ double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageCl
 }
 
 constexpr std::array<LayoutEntry, 3> kLayouts = {{
-    {Layout::kGim, squares_of, efficiency_of_squares, true, true},
-    {Layout::kMcgim, charts_of, efficiency_of_charts, false, true},
-    {Layout::kTiles, tiles_of, efficiency_of_tiles, true, false},
+    {Layout::kGim, squares_of, efficiency_of_squares, true},
+    {Layout::kMcgim, charts_of, efficiency_of_charts, false},
+    {Layout::kTiles, tiles_of, efficiency_of_tiles, true},
 }};
 
 }  // namespace

@@ -31,8 +31,7 @@ struct LayoutEntry {
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
     // Returns effective samples per sample; 0 if the layout cannot take the mesh.
     double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
-    bool races = false;         // lossy files: worth a trial
-    bool holds_planes = false;  // normals and colours
+    bool races = false;  // lossy files: worth a trial
 };
 
 // Returns the layouts in the order that --layout auto prefers where nothing else tells them apart.

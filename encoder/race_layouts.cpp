@@ -11,7 +11,6 @@
 #include "encoder/code/rate_target.h"
 #include "encoder/layout/encode_once.h"
 #include "encoder/layouts.h"
-#include "encoder/planes/make_planes.h"
 
 namespace gim {
 
@@ -21,9 +20,8 @@ class Race {
   public:
     Race(const Prepared& prepared, const EncodeOptions& options, StageClock& clock, const Observer& observer)
         : prepared_(prepared), options_(options), clock_(clock), observer_(observer) {
-        const bool with_planes = wants_planes(prepared.original.input, options);
         for (const LayoutEntry& entry : all_layouts()) {
-            if (entry.races && (entry.holds_planes || !with_planes)) entries_.push_back(&entry);
+            if (entry.races) entries_.push_back(&entry);
         }
     }
 

@@ -4,11 +4,29 @@
 
 #include "format/bytes.h"
 #include "format/seam.h"
+#include "format/tile_atlas.h"
 
 namespace gim {
 namespace {
 
 constexpr uint8_t kLossyWavelet = 0;  // other codings are for later versions
+
+struct Size {
+    uint64_t width = 0, height = 0;
+};
+
+bool is_exponent(const Header& header, uint32_t j) {
+    if (header.layout == FileLayout::kSquares) return j >= 1 && j <= kMaxSideExponent;
+    if (j > kMaxTexelExponent) return false;
+    return header.layout == FileLayout::kCharts || header.tiles.exponent + j <= kMaxSideExponent;
+}
+
+Size size_of(const Header& header, uint32_t j) {
+    if (header.layout == FileLayout::kSquares) return {(uint64_t{1} << j) + 1, (uint64_t{1} << j) + 1};
+    if (header.layout == FileLayout::kCharts) return {texels_along(header.width, j), texels_along(header.height, j)};
+    const TileAtlas atlas(header.tiles.tiles, header.tiles.intervals(0));
+    return {texels_along(atlas.width(), j), texels_along(atlas.height(), j)};
+}
 
 }  // namespace
 
@@ -26,12 +44,10 @@ Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint3
     const size_t sides_at = reader.position();
     if (!reader.skip(image_count)) return Status::kMalformed;
     plane->side_exponents = payload.subspan(sides_at, image_count);
-    const bool charts = header.layout == FileLayout::kCharts;
     uint64_t samples = 0, largest = 0;
     for (const uint8_t j : plane->side_exponents) {
-        if (charts ? j > kMaxTexelExponent : j < 1 || j > kMaxSideExponent) return Status::kMalformed;
-        const uint64_t width = charts ? chart_plane_side(header.width, j) : (uint64_t{1} << j) + 1,
-                       height = charts ? chart_plane_side(header.height, j) : width;
+        if (!is_exponent(header, j)) return Status::kMalformed;
+        const auto [width, height] = size_of(header, j);
         samples += width * height;  // at most 2^16 * 2^29
         largest = std::max({largest, width, height});
     }

@@ -16,7 +16,7 @@ inline constexpr float kNormalUnit = 1024;  // length of a normal as encoders wr
 // A plane chunk as stored; the spans point into its payload.
 struct PlaneChunk {
     float quantizer = 0;
-    std::span<const uint8_t> side_exponents;  // one per image; squares: side = 2^j + 1, charts: 2^j texels a sample
+    std::span<const uint8_t> side_exponents;  // one per image; squares: side = 2^j + 1, else 2^j texels a sample
     std::span<const uint8_t> stream;          // of the image that was asked for
 
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
@@ -26,11 +26,18 @@ struct PlaneChunk {
 inline constexpr uint32_t kPlaneKinds = 2;
 inline ChunkType plane_type(uint32_t kind) { return kind == 0 ? ChunkType::kNormals : ChunkType::kColors; }
 
-inline constexpr uint32_t kMaxTexelExponent = 6;  // of planes on charts
+inline constexpr uint32_t kMaxTexelExponent = 6;  // of planes on charts and on tiles
 
-// Texels along a side of the rectangle of charts.
-constexpr uint64_t chart_plane_side(uint32_t rectangle_side, uint32_t exponent) {
+// Texels along a side of a rectangle of samples.
+constexpr uint64_t texels_along(uint32_t rectangle_side, uint32_t exponent) {
     return (uint64_t{rectangle_side - 1} << exponent) + 1;
+}
+
+// How a plane with 2^texels texels a sample lies on tiles: as positions of that many steps more, coded with 9/7.
+inline TileShape tile_plane_shape(TileShape shape, uint32_t texels) {
+    shape.exponent += texels;
+    shape.is_sharp = false;
+    return shape;
 }
 
 // Reads the plane of one image. image < header.image_count().

@@ -22,6 +22,13 @@ constexpr uint32_t weights_step(uint32_t h) {
     return std::min(static_cast<uint32_t>(std::bit_width(h)), kTileSteps) - 1;
 }
 
+// The weights of that step, by orientation, for the first component and for later ones. Planes have those of squares.
+constexpr const BandWeights (&tile_weights(CoefficientKind kind, uint32_t h))[3][2] {
+    constexpr auto kPlanes = static_cast<size_t>(CoefficientKind::kPlanes);
+    return kind == CoefficientKind::kPlanes ? kBandWeights[kPlanes][2 * h + 1 >= kFineSide]
+                                            : kTileWeights[is_in_frames(kind)][weights_step(h)];
+}
+
 // Which bands of a tile had a block that is not empty: edges, faces.
 using TileFlags = std::array<uint8_t, 2>;
 
@@ -148,7 +155,7 @@ bool TileCoder<Coder>::code_step(const QuadComplex& complex, const TilePlanes& p
                                  int32_t* parents, TileFlags* flags) {
     const TilePlanes parent_planes(planes.h / 2);
     const bool turned = is_in_frames(models_.kind);
-    const auto& weights = kTileWeights[turned][weights_step(planes.h)];
+    const auto& weights = tile_weights(models_.kind, planes.h);
     for (uint32_t t = 0; t < complex.tiles; ++t) {
         const LevelBands bands = planes.bands(details + t * planes.details());
         LevelBands of_parents;

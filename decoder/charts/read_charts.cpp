@@ -32,6 +32,13 @@ uint64_t scratch_size(const ChartLevelShape& shape) {
     return arena.used();
 }
 
+PyramidWorkspace lay_out_plane(const PlaneLevel& plane, Arena* arena) {
+    PyramidWorkspace ws;
+    lay_out_coder(plane.width, arena, &ws);
+    lay_out_samples(plane.width, plane.height, arena, &ws);
+    return ws;
+}
+
 // Sets the texture coordinates, in the rectangle, of a sample of the box at full resolution.
 void set_texcoords(const Header& header, const ChartBox& box, uint32_t column, uint32_t row, float* uv) {
     uv[0] = static_cast<float>(box.atlas_column + static_cast<int32_t>(column)) / static_cast<float>(header.width - 1);
@@ -158,8 +165,8 @@ Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, 
 Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
     if (Status s = read_plane_chunk(request, chunk, offset, plane); s != Status::kOk) return s;
     const uint32_t exponent = plane->chunk.side_exponents[request.image];
-    const auto width = static_cast<uint32_t>(chart_plane_side(request.header.width, exponent)),
-               height = static_cast<uint32_t>(chart_plane_side(request.header.height, exponent));
+    const auto width = static_cast<uint32_t>(texels_along(request.header.width, exponent)),
+               height = static_cast<uint32_t>(texels_along(request.header.height, exponent));
     plane->coarsest = halvings(width, height);
     if (request.level > plane->coarsest) return Status::kNoSuchLevel;
     plane->width = halved(width, request.level);
@@ -168,13 +175,15 @@ Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_
     return Status::kOk;
 }
 
-PlaneWorkspace lay_out_chart_plane(const PlaneLevel& plane, Arena* arena) {
-    PlaneWorkspace ws;
-    lay_out_coder(plane.width, arena, &ws.pyramid);
-    lay_out_samples(plane.width, plane.height, arena, &ws.pyramid);
-    return ws;
+uint64_t chart_plane_scratch_size(const LevelRequest&, const PlaneLevel& plane) {
+    Arena arena(nullptr);
+    (void)lay_out_plane(plane, &arena);
+    return arena.used();
 }
 
-void close_chart_plane(const PlaneLevel&, const PlaneWorkspace&, float*) {}
+Status decode_chart_plane(const LevelRequest&, const PlaneLevel& plane, void* scratch, float* values) {
+    Arena arena(scratch);
+    return decode_pyramid_plane(plane, lay_out_plane(plane, &arena), values);
+}
 
 }  // namespace gim

@@ -12,8 +12,8 @@ Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, 
 Status read_chart_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
 Status open_chart_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
-PlaneWorkspace lay_out_chart_plane(const PlaneLevel& plane, Arena* arena);
-// Changes nothing: the encoder fills planes beyond the charts' borders, and no sample belongs to two of them.
-void close_chart_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+uint64_t chart_plane_scratch_size(const LevelRequest& request, const PlaneLevel& plane);
+// Makes no samples equal: the encoder fills planes beyond the charts' borders, and no sample belongs to two of them.
+Status decode_chart_plane(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values);
 
 }  // namespace gim

@@ -58,12 +58,16 @@ struct LevelReader {
 
     // Opens a level of the plane that `chunk` at `offset` holds. request.level: of the plane.
     Status (*open_plane)(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
-    PlaneWorkspace (*lay_out_plane)(const PlaneLevel& plane, Arena* arena);
-    // Makes samples of one surface point equal.
-    void (*close_plane)(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+    // Bytes of scratch that decode_plane needs.
+    uint64_t (*plane_scratch_size)(const LevelRequest& request, const PlaneLevel& plane);
+    // Writes plane.width * plane.height triples as they are stored. Those of one surface point are equal.
+    Status (*decode_plane)(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values);
 };
 
 // Checks the chunk of a plane and fills plane->chunk and plane->prefix.
 Status read_plane_chunk(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
+
+// Decodes a plane that is one pyramid.
+Status decode_pyramid_plane(const PlaneLevel& plane, const PyramidWorkspace& ws, float* values);
 
 }  // namespace gim

@@ -147,11 +147,19 @@ Status open_square_plane(const LevelRequest& request, const Chunk& chunk, uint64
     return Status::kOk;
 }
 
-PlaneWorkspace lay_out_square_plane(const PlaneLevel& plane, Arena* arena) { return lay_out_plane(plane.width, arena); }
+uint64_t square_plane_scratch_size(const LevelRequest&, const PlaneLevel& plane) {
+    Arena arena(nullptr);
+    (void)lay_out_plane(plane.width, &arena);
+    return arena.used();
+}
 
-void close_square_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values) {
+Status decode_square_plane(const LevelRequest&, const PlaneLevel& plane, void* scratch, float* values) {
+    Arena arena(scratch);
+    const PlaneWorkspace ws = lay_out_plane(plane.width, &arena);
+    if (Status s = decode_pyramid_plane(plane, ws.pyramid, values); s != Status::kOk) return s;
     ring_classes(plane.seams, plane.width, {ws.class_of, ring_length(plane.width)});
     average_classes(plane.width, ws.class_of, ring_class_count(plane.seams, plane.width), values, ws.fuse);
+    return Status::kOk;
 }
 
 }  // namespace gim

@@ -11,7 +11,7 @@ Status decode_square_grid(const LevelRequest& request, const SurfaceArrays& out,
 Status read_square_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
 Status open_square_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
-PlaneWorkspace lay_out_square_plane(const PlaneLevel& plane, Arena* arena);
-void close_square_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+uint64_t square_plane_scratch_size(const LevelRequest& request, const PlaneLevel& plane);
+Status decode_square_plane(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values);
 
 }  // namespace gim

@@ -5,14 +5,21 @@
 #include <cstdint>
 #include <span>
 
-#include "decoder/layout/plane_level.h"
 #include "decoder/pyramid/arena.h"
 #include "decoder/pyramid/pyramid_decoder.h"
 #include "decoder/squares/triangulate.h"
 #include "format/container.h"
+#include "format/fuse.h"
 #include "format/seam.h"
 
 namespace gim {
+
+// Memory to decode a square and to make the two sides of its seams equal, in the caller's scratch.
+struct PlaneWorkspace {
+    PyramidWorkspace pyramid;
+    uint32_t* class_of = nullptr;
+    FuseWork fuse;
+};
 
 // Everything that decoding one level of an image needs.
 struct ImageWorkspace : PlaneWorkspace {

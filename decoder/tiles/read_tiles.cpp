@@ -59,6 +59,59 @@ class AtlasTexcoords {
     uint32_t level_;
 };
 
+// Texels a sample at full resolution, as an exponent of 2.
+uint32_t texels_of(const LevelRequest& request, const PlaneLevel& plane) {
+    return plane.chunk.side_exponents[request.image];
+}
+
+TileShape plane_shape(const LevelRequest& request, const PlaneLevel& plane) {
+    return tile_plane_shape(request.header.tiles, texels_of(request, plane));
+}
+
+// Where the texels of a level of a plane lie: as the samples of the atlas at full resolution, and between them.
+class AtlasTexels {
+  public:
+    AtlasTexels(const LevelRequest& request, const PlaneLevel& plane)
+        : tiles_(request.header.tiles.tiles),
+          atlas_(tiles_, request.header.tiles.intervals(0)),
+          exponent_(texels_of(request, plane) - request.level),
+          last_(request.header.tiles.intervals(0) << exponent_) {}
+
+    uint32_t width() const { return static_cast<uint32_t>(texels_along(atlas_.width(), exponent_)); }
+    uint32_t height() const { return static_cast<uint32_t>(texels_along(atlas_.height(), exponent_)); }
+
+    // samples: per tile (last + 1)^2 triples. Texels between slots repeat the nearest one of a slot.
+    void fill(const float* samples, float* values) const {
+        std::fill_n(values, 3 * size_t{width()} * height(), 0.0f);
+        for (uint32_t t = 0; t < tiles_; ++t) {
+            const Extent rows = around(atlas_.row(t), height()), columns = around(atlas_.column(t), width());
+            const float* tile = samples + 3 * t * size_t{last_ + 1} * (last_ + 1);
+            for (uint32_t y = rows.begin; y < rows.end; ++y) {
+                const float* row = tile + 3 * size_t{rows.place(y, last_)} * (last_ + 1);
+                float* to = values + 3 * (size_t{y} * width() + columns.begin);
+                for (uint32_t x = columns.begin; x < columns.end; ++x, to += 3)
+                    std::copy_n(row + 3 * size_t{columns.place(x, last_)}, 3, to);
+            }
+        }
+    }
+
+  private:
+    // The texels of a slot and those around it that are nearer to it than to the next, along one axis.
+    struct Extent {
+        uint32_t first, begin, end;
+        uint32_t place(uint32_t x, uint32_t last) const { return x < first ? 0 : std::min(x - first, last); }
+    };
+    Extent around(uint32_t first_sample, uint32_t size) const {
+        const uint32_t gap = 1u << exponent_, first = first_sample << exponent_;
+        return {first, first - std::min(first, gap / 2), std::min(size, first + last_ + (gap + 1) / 2)};
+    }
+
+    uint32_t tiles_;
+    TileAtlas atlas_;
+    uint32_t exponent_;
+    uint32_t last_;  // of the texels along a side of a tile
+};
+
 }  // namespace
 
 Status tile_level_info(const LevelRequest& request, gim_level_info* info) {
@@ -163,8 +216,31 @@ Status read_tile_seams(const LevelRequest& request, uint32_t* class_of, uint32_t
     return Status::kOk;
 }
 
-Status open_tile_plane(const LevelRequest&, const Chunk&, uint64_t, PlaneLevel*) { return Status::kUnsupportedVersion; }
-PlaneWorkspace lay_out_tile_plane(const PlaneLevel&, Arena*) { return {}; }
-void close_tile_plane(const PlaneLevel&, const PlaneWorkspace&, float*) {}
+Status open_tile_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
+    if (Status s = read_plane_chunk(request, chunk, offset, plane); s != Status::kOk) return s;
+    plane->coarsest = texels_of(request, *plane);
+    if (request.level > plane->coarsest) return Status::kNoSuchLevel;
+    const AtlasTexels place(request, *plane);
+    plane->width = place.width();
+    plane->height = place.height();
+    return Status::kOk;
+}
+
+uint64_t tile_plane_scratch_size(const LevelRequest& request, const PlaneLevel& plane) {
+    Arena arena(nullptr);
+    (void)lay_out_tiles(plane_shape(request, plane), request.level, &arena);
+    return arena.used();
+}
+
+Status decode_tile_plane(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values) {
+    const TileShape shape = plane_shape(request, plane);
+    Arena arena(scratch);
+    TileWorkspace ws = lay_out_tiles(shape, request.level, &arena);
+    if (Status s = read_complex(request.header, request.file, ws); s != Status::kOk) return s;
+    float* samples = nullptr;
+    if (Status s = decode_tile_samples(shape, plane.chunk, request.level, ws, &samples); s != Status::kOk) return s;
+    AtlasTexels(request, plane).fill(samples, values);
+    return Status::kOk;
+}
 
 }  // namespace gim

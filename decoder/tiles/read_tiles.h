@@ -10,9 +10,8 @@ Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, c
 Status decode_tile_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
 Status read_tile_seams(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
-// Planes of tiles are for later versions.
 Status open_tile_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
-PlaneWorkspace lay_out_tile_plane(const PlaneLevel& plane, Arena* arena);
-void close_tile_plane(const PlaneLevel& plane, const PlaneWorkspace& ws, float* values);
+uint64_t tile_plane_scratch_size(const LevelRequest& request, const PlaneLevel& plane);
+Status decode_tile_plane(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values);
 
 }  // namespace gim

@@ -15,6 +15,14 @@
 namespace gim {
 namespace {
 
+// What the streams of a complex hold: positions or a plane.
+struct TileCoding {
+    const TileShape& shape;
+    DetailCoding details;
+    CoefficientKind kind;
+    int32_t middle;  // what the base is stored relative to
+};
+
 // Lets the decoder take part in traversals that ask a writer for the complex.
 struct NoSource {};
 
@@ -28,8 +36,15 @@ class TileDecoder {
   public:
     using Sample = typename Wavelet::Sample;
 
-    TileDecoder(const Header& header, uint32_t level, TileWorkspace& ws)
-        : header_(header), coding_(detail_coding_of(header)), steps_(header.tiles.exponent), level_(level), ws_(ws) {}
+    TileDecoder(const TileCoding& coding, uint32_t level, TileWorkspace& ws)
+        : shape_(coding.shape),
+          coding_(coding.details),
+          middle_(coding.middle),
+          steps_(coding.shape.exponent),
+          level_(level),
+          ws_(ws) {
+        new (ws.models) BandModels(coding.kind);
+    }
 
     // Decodes the stream of a level. The coarsest level comes first.
     bool decode(RangeDecoder& coder, uint32_t to_level) {
@@ -50,17 +65,16 @@ class TileDecoder {
         const QuadComplex& complex = ws_.complex;
         BaseCoder<RangeDecoder> base_coder(&coder, ws_.models);
         if (!base_coder.code(complex, ws_.base)) return false;
-        const int32_t middle = 1 << (header_.bits - 1);
-        const float step = tile_base_step(header_.tiles, coding_.quantizer);
+        const float step = tile_base_step(shape_, coding_.quantizer);
         const TilePlanes planes(1);
         for (uint32_t h = 0; h < complex.half_edges(); ++h) {
             Sample* to = samples(0) + tile_of(h) * planes.size() + planes.sides[side_of(h)].low.at(0);
             const int32_t* value = ws_.base + 3 * size_t{complex.vertex[h]};
             for (size_t k = 0; k < 3; ++k) {
                 if constexpr (std::is_integral_v<Sample>)
-                    to[k] = static_cast<int32_t>(static_cast<uint32_t>(value[k]) + static_cast<uint32_t>(middle));
+                    to[k] = static_cast<int32_t>(static_cast<uint32_t>(value[k]) + static_cast<uint32_t>(middle_));
                 else
-                    to[k] = static_cast<float>(value[k]) * step + static_cast<float>(middle);
+                    to[k] = static_cast<float>(value[k]) * step + static_cast<float>(middle_);
             }
         }
         return true;
@@ -77,7 +91,7 @@ class TileDecoder {
                                   ws_.flags))
             return false;
         Sample* from = samples(step - 1);
-        const DetailSteps detail_steps = tile_steps_at(header_.tiles, coding_, steps_ - step + 1);
+        const DetailSteps detail_steps = tile_steps_at(shape_, coding_, steps_ - step + 1);
         load_tile_details(complex, planes, details, detail_steps, from);
         if constexpr (!std::is_integral_v<Sample>) {
             if (Wavelet::kLowGain != 1) {
@@ -93,8 +107,9 @@ class TileDecoder {
         return true;
     }
 
-    const Header& header_;
+    const TileShape& shape_;
     DetailCoding coding_;
+    int32_t middle_;
     uint32_t steps_, level_;
     TileWorkspace& ws_;
     uint32_t done_ = 0;
@@ -103,8 +118,8 @@ class TileDecoder {
 template <class Wavelet>
 Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
                    float** samples) {
-    new (ws.models) BandModels(tile_kind_of(header));
-    TileDecoder<Wavelet> decoder(header, level, ws);
+    TileDecoder<Wavelet> decoder({header.tiles, detail_coding_of(header), tile_kind_of(header), 1 << (header.bits - 1)},
+                                 level, ws);
     for (uint32_t l = header.level_count; l-- > level;) {
         Chunk chunk;
         uint64_t offset = 0;
@@ -162,6 +177,16 @@ Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_
     if (header.coding == Coding::kLossless) return decode_with<Tiles53>(header, file, level, ws, samples);
     return header.tiles.is_sharp ? decode_with<TilesSharp>(header, file, level, ws, samples)
                                  : decode_with<Tiles97>(header, file, level, ws, samples);
+}
+
+Status decode_tile_samples(const TileShape& shape, const PlaneChunk& plane, uint32_t level, TileWorkspace& ws,
+                           float** samples) {
+    TileDecoder<Tiles97> decoder({shape, {plane.quantizer}, CoefficientKind::kPlanes, 0}, level, ws);
+    RangeDecoder coder(plane.stream);
+    if (!decoder.decode(coder, level) || !coder.intact()) return Status::kMalformed;
+    const size_t side = shape.intervals(level) + 1;
+    *samples = to_units<float>(ws.samples[0], ws.complex.tiles * side * side * 3);
+    return Status::kOk;
 }
 
 }  // namespace gim

@@ -7,6 +7,7 @@
 #include "decoder/pyramid/arena.h"
 #include "format/container.h"
 #include "format/expectation.h"
+#include "format/plane_code.h"
 #include "format/quad_code.h"
 #include "format/quad_complex.h"
 #include "format/tile_code.h"
@@ -35,5 +36,9 @@ Status read_complex(const Header& header, std::span<const uint8_t> file, TileWor
 // Decodes a level: per tile (side+1)^2 triples in units, row by row. Samples of one surface point have equal bits.
 Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
                     float** samples);
+
+// The same for a plane on the complex of ws. shape: that of the plane (tile_plane_shape).
+Status decode_tile_samples(const TileShape& shape, const PlaneChunk& plane, uint32_t level, TileWorkspace& ws,
+                           float** samples);
 
 }  // namespace gim

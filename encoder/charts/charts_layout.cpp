@@ -1,12 +1,14 @@
 #include "encoder/charts/charts_layout.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
-#include "encoder/charts/chart_texels.h"
+#include "encoder/charts/chart_plane.h"
 #include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
 #include "encoder/fit/fold_repair.h"
+#include "encoder/planes/rectangle_texels.h"
 
 namespace gim {
 
@@ -53,12 +55,12 @@ class ChartsLayout final : public LayoutImages {
     }
 
     std::vector<uint8_t> plane_exponents(uint32_t side) const override {
-        return {chart_plane_exponent(charts_.image, side)};
+        const double samples = double(charts_.image.width()) * charts_.image.height();
+        return {texel_exponent(side / std::sqrt(samples))};
     }
-    TexelGrid texel_grid(size_t, uint8_t exponent) const override { return chart_texels(charts_.image, exponent); }
-    Pyramid<float> analyse_plane(size_t, const TexelGrid& grid, std::vector<float> values,
-                                 float quantizer) const override {
-        return analyse_chart_plane(grid, std::move(values), quantizer);
+    TexelGrid texel_grid(size_t, uint8_t exponent) const override { return rectangle_texels(charts_.image, exponent); }
+    PlaneCoder analyse_plane(size_t, const TexelGrid& grid, std::vector<float> values, float quantizer) const override {
+        return coder_of(analyse_chart_plane(grid, std::move(values), quantizer));
     }
 
   private:

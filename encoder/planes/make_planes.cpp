@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "encoder/code/code_bands.h"
 #include "encoder/planes/input_colors.h"
 #include "encoder/planes/measure_planes.h"
 #include "encoder/planes/sample_planes.h"
@@ -53,20 +52,17 @@ float quantizer_of(Kind kind, double quality) {
     return std::clamp(static_cast<float>(step), kMinQuantizer, kMaxQuantizer);
 }
 
-// One plane of all images, as wavelet bands.
+// One plane of all images, ready to be coded.
 struct AnalysedPlane {
     Kind kind = Kind::kNormals;
     std::vector<uint8_t> side_exponents;
-    std::vector<Pyramid<float>> pyramids;
+    std::vector<PlaneCoder> coders;
 };
 
 CodedPlane code(const AnalysedPlane& plane, double quality) {
     const float quantizer = quantizer_of(plane.kind, quality);
     std::vector<std::vector<uint8_t>> streams;
-    for (const Pyramid<float>& pyramid : plane.pyramids) {
-        Pyramid<int32_t> bands = quantize_bands(pyramid, {quantizer}).bands;
-        streams.push_back(std::move(code_bands(bands, 1, CoefficientKind::kPlanes)[0]));
-    }
+    for (const PlaneCoder& coder : plane.coders) streams.push_back(coder(quantizer));
     return {plane_type(static_cast<uint32_t>(plane.kind)), serialize_plane(quantizer, plane.side_exponents, streams)};
 }
 
@@ -127,8 +123,8 @@ struct PlaneMaker::Impl {
                     points = source->locate(grid.texels);
                     located = exponent;
                 }
-                plane.pyramids.push_back(images.analyse_plane(image, grid, plane_values(plane.kind, grid, points),
-                                                              quantizer_of(plane.kind, plane_quality(options))));
+                plane.coders.push_back(images.analyse_plane(image, grid, plane_values(plane.kind, grid, points),
+                                                            quantizer_of(plane.kind, plane_quality(options))));
             }
         }
         return planes;
@@ -147,10 +143,6 @@ std::vector<CodedPlane> code_to_budget(const std::vector<AnalysedPlane>& planes,
         const bool fits = rate.kind != RateTarget::Kind::kBytes || 2.0 * static_cast<double>(bytes) <= rate.value;
         if (fits || quality <= 0) return coded;
     }
-}
-
-bool wants_planes(const TriangleMesh& input, const EncodeOptions& options) {
-    return options.normal_side > 0 || color_side(input, options) > 0;
 }
 
 PlaneMaker::PlaneMaker(const Mesh& clean, const TriangleMesh& input, const EncodeOptions& options)

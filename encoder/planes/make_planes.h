@@ -14,9 +14,6 @@
 
 namespace gim {
 
-// Returns whether the options ask for a plane of this input.
-bool wants_planes(const TriangleMesh& input, const EncodeOptions& options);
-
 class PlaneMaker {
   public:
     // Keeps references to its arguments. `clean`: the cleaned mesh; `input`: the mesh as read, for its appearance.

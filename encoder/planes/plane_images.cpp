@@ -1,6 +1,17 @@
 #include "encoder/planes/plane_images.h"
 
+#include <utility>
+
+#include "encoder/code/code_bands.h"
+
 namespace gim {
+
+PlaneCoder coder_of(Pyramid<float> pyramid) {
+    return [pyramid = std::move(pyramid)](float quantizer) {
+        Pyramid<int32_t> bands = quantize_bands(pyramid, {quantizer}).bands;
+        return std::move(code_bands(bands, 1, CoefficientKind::kPlanes)[0]);
+    };
+}
 
 std::vector<Vec3> outside_directions(const GeometryImage& image) {
     const std::vector<uint32_t>& point = image.gluing.representative;

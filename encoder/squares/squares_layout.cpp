@@ -69,9 +69,9 @@ class SquaresLayout final : public LayoutImages {
     TexelGrid texel_grid(size_t image, uint8_t exponent) const override {
         return square_texels(squares_.images[image], (1u << exponent) + 1);
     }
-    Pyramid<float> analyse_plane(size_t image, const TexelGrid& grid, std::vector<float> values, float) const override {
+    PlaneCoder analyse_plane(size_t image, const TexelGrid& grid, std::vector<float> values, float) const override {
         equalize_ring(squares_.images[image].sideband, grid.columns, values);
-        return analyse<Irreversible97>(std::move(values), grid.columns);
+        return coder_of(analyse<Irreversible97>(std::move(values), grid.columns));
     }
 
   private:

@@ -8,6 +8,7 @@
 #include "encoder/fit/fit_coded.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/tile_codec.h"
+#include "encoder/tiles/tile_plane.h"
 #include "encoder/tiles/write_tiles.h"
 
 namespace gim {
@@ -68,9 +69,15 @@ class TilesLayout final : public LayoutImages {
         return tiles_writer(made_.tiles, with_units);
     }
 
-    std::vector<uint8_t> plane_exponents(uint32_t) const override { return {}; }
-    TexelGrid texel_grid(size_t, uint8_t) const override { return {}; }
-    Pyramid<float> analyse_plane(size_t, const TexelGrid&, std::vector<float>, float) const override { return {}; }
+    std::vector<uint8_t> plane_exponents(uint32_t side) const override {
+        return {tile_plane_exponent(made_.tiles, side)};
+    }
+    TexelGrid texel_grid(size_t, uint8_t exponent) const override {
+        return tile_texels(made_.tiles, made_.atlas, exponent);
+    }
+    PlaneCoder analyse_plane(size_t, const TexelGrid& grid, std::vector<float> values, float) const override {
+        return tile_plane_coder(made_.tiles, grid, values);
+    }
 
   private:
     // Takes the tiles' samples from the atlas.

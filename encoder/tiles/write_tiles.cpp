@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "encoder/code/file_units.h"
-#include "encoder/code/range_encoder.h"
 #include "encoder/tiles/code_complex.h"
+#include "encoder/tiles/code_tiles.h"
 #include "encoder/tiles/tile_pyramid.h"
 #include "format/tile_atlas.h"
-#include "format/tile_base.h"
-#include "format/tile_code.h"
 #include "format/tile_lifting.h"
 
 namespace gim {
@@ -127,25 +125,8 @@ TilePyramid<int32_t> TileLevelCoder::quantized(const Header& header) const {
 }
 
 std::vector<std::vector<uint8_t>> TileLevelCoder::code_levels(const Header& header) const {
-    const QuadComplex& complex = coded_.complex.view();
     TilePyramid<int32_t> pyramid = quantized(header);
-    const uint32_t steps = pyramid.steps(), columns = (1u << steps) + 1;
-    BandModels models(tile_kind_of(header));
-    OwnBandWork work(columns);
-    std::vector<TileFlags> flags(complex.tiles);
-    std::vector<std::vector<uint8_t>> streams;
-    uint32_t done = 0;
-    for (uint32_t level = header.level_count; level-- > 0;) {
-        RangeEncoder coder;
-        if (done == 0) (void)BaseCoder<RangeEncoder>(&coder, &models).code(complex, pyramid.base.data());
-        TileCoder<RangeEncoder> tile_coder(&coder, &models, work.view());
-        for (; done < steps - level; ++done) {
-            (void)tile_coder.code_step(complex, TilePlanes(1u << done), pyramid.details[done].data(),
-                                       done > 0 ? pyramid.details[done - 1].data() : nullptr, flags.data());
-        }
-        streams.push_back(coder.finish());
-    }
-    return streams;
+    return code_tiles(coded_.complex.view(), pyramid, header.level_count, tile_kind_of(header));
 }
 
 }  // namespace

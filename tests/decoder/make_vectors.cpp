@@ -11,11 +11,13 @@
 #include "encoder/code/file_units.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/squares/write_squares.h"
+#include "encoder/tiles/tile_plane.h"
 #include "encoder/tiles/write_tiles.h"
 #include "format/checksum.h"
 #include "format/plane_code.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
+#include "format/tile_atlas.h"
 #include "tests/decoder/vectors.h"
 #include "tests/encoder/charts/made_charts.h"
 #include "tests/encoder/tiles/made_tiles.h"
@@ -145,9 +147,8 @@ Bytes plane(const std::vector<uint32_t>& sides, float quantizer, float first) {
     return serialize_plane(quantizer, exponents, streams);
 }
 
-// The same for a rectangle of charts: 2^exponent samples per sample and direction.
-Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quantizer, float first) {
-    const uint32_t columns = ((width - 1) << exponent) + 1, rows = ((height - 1) << exponent) + 1;
+// The same on a rectangle.
+std::vector<float> plane_values(uint32_t columns, uint32_t rows, float first) {
     std::vector<float> values;
     for (uint32_t r = 0; r < rows; ++r) {
         for (uint32_t c = 0; c < columns; ++c) {
@@ -156,10 +157,24 @@ Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quant
             values.push_back(static_cast<float>(r / 4 % 2 * 24) - 12.0f);
         }
     }
-    Pyramid<int32_t> bands =
-        quantize_bands(analyse<Irreversible97>(std::move(values), columns, rows, halvings(columns, rows)), {quantizer})
-            .bands;
+    return values;
+}
+
+// On charts: 2^exponent texels per sample and direction.
+Bytes chart_plane(uint32_t width, uint32_t height, uint8_t exponent, float quantizer, float first) {
+    const uint32_t columns = ((width - 1) << exponent) + 1, rows = ((height - 1) << exponent) + 1;
+    const Pyramid<float> analysed =
+        analyse<Irreversible97>(plane_values(columns, rows, first), columns, rows, halvings(columns, rows));
+    Pyramid<int32_t> bands = quantize_bands(analysed, {quantizer}).bands;
     return serialize_plane(quantizer, Bytes{exponent}, code_bands(bands, 1, CoefficientKind::kPlanes));
+}
+
+// On tiles: likewise. Texels on the sides of tiles get the mean of their copies.
+Bytes tile_plane(const TileImage& image, uint8_t exponent, float quantizer, float first) {
+    const TileAtlas atlas(static_cast<uint32_t>(image.quads.size()), 1u << image.exponent);
+    const TexelGrid grid = {((atlas.width() - 1) << exponent) + 1, ((atlas.height() - 1) << exponent) + 1, {}};
+    const PlaneCoder coder = tile_plane_coder(image, grid, plane_values(grid.columns, grid.rows, first));
+    return serialize_plane(quantizer, Bytes{exponent}, std::vector<Bytes>{coder(quantizer)});
 }
 
 // ---- files in parts -------------------------------------------------------------------------------------------------
@@ -399,6 +414,19 @@ void write_valid_tiles(Writer& out) {
     plain.units->tangential = plain.units->cell_area = 0;
     out.valid("tiles-frames-none", encode_tiles(noisy, plain));
     out.valid("tiles-wide-origin", far_away(encode_tiles(noisy, lossy(12, 3, 20))));
+
+    CodingParameters planes = lossless(12, 3);
+    planes.planes = {{ChunkType::kNormals, tile_plane(noisy, 0, 20, -30)},
+                     {ChunkType::kColors, tile_plane(noisy, 2, 10, 40)}};
+    out.valid("tiles-cube-planes", encode_tiles(noisy, planes));
+    TileImage small = tiles(genus_2(), 1, 3, 9);
+    small.is_sharp = true;
+    planes = lossy(12, 3, 10);
+    planes.planes = {{ChunkType::kNormals, tile_plane(small, 1, 30, 100)}};
+    out.valid("tiles-genus-2-sharp-planes", encode_tiles(small, planes));
+    const TileImage open = tiles(strip(3, 1), 2, 9, 11);
+    planes.planes = {{ChunkType::kColors, tile_plane(open, 3, 4, 60)}};
+    out.valid("tiles-strip-planes", encode_tiles(open, planes));
 }
 
 void write_invalid_tiles(Writer& out) {
@@ -436,8 +464,25 @@ void write_invalid_tiles(Writer& out) {
     };
     stream("malformed.tiles-stream-of-ones", [](Bytes& b) { b.assign(64, 0xFF); });
     stream("malformed.tiles-stream-halved", [](Bytes& b) { b.resize(b.size() / 2); });
-    out.invalid("unsupported-version.tiles-plane",
-                with_parts(file, [](Parts& p) { insert_chunk(&p, p.chunks.size(), 3, true, plane({3}, 48, 200)); }));
+
+    CodingParameters parameters = lossless(12, 3);
+    const TileImage image = tiles(cube(), 2, 9, 3);
+    parameters.planes = {{ChunkType::kColors, tile_plane(image, 1, 20, 10)}};
+    const Bytes colored = encode_tiles(image, parameters);
+    const auto changed = [&](const char* name, const Bytes& from, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(from, [&](Parts& p) { change(p.payloads.back()); }));
+    };
+    changed("unsupported-version.tiles-plane-coding-1", colored, [](Bytes& b) { b[0] = 1; });
+    changed("malformed.tiles-plane-no-exponent", colored, [](Bytes& b) { b.resize(5); });
+    changed("malformed.tiles-plane-exponent-7", colored, [](Bytes& b) { b[5] = 7; });
+    changed("malformed.tiles-plane-magnitude-too-large", colored, [](Bytes& b) { b.resize(6), b.resize(70, 0xFF); });
+    changed("malformed.tiles-plane-raw-bits-missing", colored, [](Bytes& b) { b.resize(6), b.resize(10, 0xFF); });
+    const TileImage fine = tiles(strip(1, 1), 9, 0, 3);
+    parameters = lossy(8, 3, 100);
+    parameters.planes = {{ChunkType::kColors, tile_plane(fine, 0, 20, 10)}};
+    const Bytes large = encode_tiles(fine, parameters);
+    changed("malformed.tiles-plane-finer-than-any", large, [](Bytes& b) { b.resize(6), b[5] = 6; });
+    changed("limit-exceeded.tiles-plane-samples", large, [](Bytes& b) { b.resize(6), b[5] = 5; });
 }
 
 void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine) {

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "format/checksum.h"
 #include "format/container.h"
@@ -129,6 +131,48 @@ TEST(ReadPlane, RefusesSmallScratchAndNullPointers) {
     EXPECT_EQ(call(values.data(), scratch.data(), plane.scratch_size), GIM_OK);
 }
 
+// Texture coordinates find the samples of a plane of tiles at each of its levels. Those of one surface point are equal, and
+// between two tiles the samples at their sides go on.
+TEST(ReadPlane, PlanesOfTilesLieUnderTheirTextureCoordinates) {
+    const Bytes file = vector_file("tiles-cube-planes");
+    Decoder decoder;
+    ASSERT_EQ(decoder.open(file), GIM_OK);
+    DecoderLevel level;
+    ASSERT_EQ(decoder.read_level(0, 0, &level), GIM_OK);
+    const size_t samples = size_t{level.width} * level.height;
+    std::vector<float> positions(3 * samples), texcoords(2 * samples);
+    ASSERT_EQ(decoder.grid(level, {positions, {}, texcoords, {}}), GIM_OK);
+    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS).info.width, level.width);
+    EXPECT_EQ(decode(file, GIM_PLANE_COLORS).info.width, 4 * (level.width - 1) + 1);
+    EXPECT_EQ(decode(file, GIM_PLANE_COLORS).info.height, 4 * (level.height - 1) + 1);
+    EXPECT_EQ(decode(file, GIM_PLANE_NORMALS, 1).status, GIM_NO_SUCH_LEVEL);
+    EXPECT_EQ(decode(file, GIM_PLANE_COLORS, 3).status, GIM_NO_SUCH_LEVEL);
+    for (uint32_t l = 0; l <= 2; ++l) {
+        const Plane plane = decode(file, GIM_PLANE_COLORS, l);
+        ASSERT_EQ(plane.status, GIM_OK);
+        const uint32_t step = 4u >> l, width = plane.info.width;
+        ASSERT_EQ(width, step * (level.width - 1) + 1);
+        std::map<std::array<float, 3>, const float*> at_point;
+        for (size_t i = 0; i < samples; ++i) {
+            const float* value = &plane.values[3 * (i / level.width * step * width + i % level.width * step)];
+            const std::array<float, 3> point = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+            ASSERT_FALSE(std::isnan(point[0]));
+            const float* first = at_point.try_emplace(point, value).first->second;
+            for (int k = 0; k < 3; ++k) ASSERT_EQ(first[k], value[k]) << l << ", " << i;
+        }
+        EXPECT_EQ(at_point.size(), 6 * 16 + 2u);
+        // A slot has 5 samples. The gap behind it has step - 1 texels.
+        for (uint32_t row = 0; row < plane.info.height; ++row) {
+            for (uint32_t gap = 1; gap < step; ++gap) {
+                const uint32_t last = 4 * step, nearest = gap < step / 2 ? last : last + step;
+                for (uint32_t k = 0; k < 3; ++k)
+                    ASSERT_EQ(plane.values[3 * (size_t{row} * width + last + gap) + k],
+                              plane.values[3 * (size_t{row} * width + nearest) + k]);
+            }
+        }
+    }
+}
+
 // Bad payloads with a right checksum: the decoder refuses them, or its values are finite and within bounds.
 void expect_harmless(const Bytes& file) {
     for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
@@ -145,16 +189,19 @@ void expect_harmless(const Bytes& file) {
 }
 
 TEST(ReadPlane, EveryTruncatedPayloadIsHarmless) {
-    const Bytes file = vector_file("planes-sphere-17");
-    for (const ChunkType type : {ChunkType::kNormals, ChunkType::kColors}) {
-        size_t size = 0;
-        with_plane(file, type, [&](Bytes& b) { size = b.size(); });
-        for (size_t n = 0; n < size; ++n) expect_harmless(with_plane(file, type, [&](Bytes& b) { b.resize(n); }));
+    for (const char* name : {"planes-sphere-17", "tiles-cube-planes", "tiles-strip-planes"}) {
+        const Bytes file = vector_file(name);
+        for (const ChunkType type : {ChunkType::kNormals, ChunkType::kColors}) {
+            size_t size = 0;
+            with_plane(file, type, [&](Bytes& b) { size = b.size(); });
+            for (size_t n = 0; n < size; ++n) expect_harmless(with_plane(file, type, [&](Bytes& b) { b.resize(n); }));
+        }
     }
 }
 
 TEST(ReadPlane, EveryFlippedBitOfAPayloadIsHarmless) {
-    for (const char* name : {"planes-sphere-17", "planes-two-images"}) {
+    for (const char* name :
+         {"planes-sphere-17", "planes-two-images", "tiles-cube-planes", "tiles-genus-2-sharp-planes"}) {
         const Bytes file = vector_file(name);
         for (const ChunkType type : {ChunkType::kNormals, ChunkType::kColors}) {
             size_t size = 0;

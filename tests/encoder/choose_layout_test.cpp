@@ -94,14 +94,14 @@ TEST(ChooseLayout, AtAQualityTheWinnerReachesThePsnrOfTheSquare) {
     }
 }
 
-// Tiles hold no colours, so a mesh with colours gets squares.
-TEST(ChooseLayout, ColoursAreKept) {
+TEST(ChooseLayout, ColoursAreKeptWhateverWins) {
     TriangleMesh mesh = corpus::plate_with_holes(2, 4);
     mesh.appearance.corner_colors.assign(mesh.triangles.size(), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
     const auto best = raced(Layout::kAuto, mesh, {RateTarget::Kind::kPsnr, 45});
     ASSERT_TRUE(best.ok());
-    EXPECT_NE(best.value().report.layout, Layout::kTiles);
     EXPECT_EQ(best.value().report.planes.size(), 1);
+    EXPECT_EQ(best.value().report.others.size(), 1);
+    EXPECT_TRUE(best.value().report.warnings.empty());
 }
 
 }  // namespace

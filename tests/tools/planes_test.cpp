@@ -267,8 +267,8 @@ TEST(Planes, SixteenBitPngHoldsTheNormals) {
     }
 }
 
-TEST(Planes, TheWholeWayThroughTheProgram) {
-    TemporaryFolder folder;
+// A sphere whose colours are 128 + 100 * its coordinates.
+void save_colored_sphere(const std::string& path) {
     TriangleMesh mesh = corpus::sphere(8);
     std::string ply =
         "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
@@ -282,13 +282,32 @@ TEST(Planes, TheWholeWayThroughTheProgram) {
     }
     for (const auto& t : mesh.triangles)
         ply += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
-    save(folder.file("in.ply"), ply);
-    const auto run = [&](std::vector<std::string> words) {
-        words.insert(words.begin(), "gim");
-        std::vector<const char*> argv;
-        for (const std::string& w : words) argv.push_back(w.c_str());
-        return run_gim(static_cast<int>(argv.size()), argv.data());
-    };
+    save(path, ply);
+}
+
+int run(std::vector<std::string> words) {
+    words.insert(words.begin(), "gim");
+    std::vector<const char*> argv;
+    for (const std::string& w : words) argv.push_back(w.c_str());
+    return run_gim(static_cast<int>(argv.size()), argv.data());
+}
+
+// Reads the colour at a point of that sphere.
+void expect_color_of_the_sphere(const std::string& path) {
+    SCOPED_TRACE(path);
+    const Input back = read_colored(path);
+    EXPECT_TRUE(back.warnings.empty());
+    ASSERT_FALSE(back.mesh.appearance.empty());
+    const std::vector<Vec3> point = {Vec3(0.6, 0, 0.8)};
+    const std::vector<float> color = InputColors(back.mesh).at(point);
+    EXPECT_NEAR(color[0], 188, 6);
+    EXPECT_NEAR(color[1], 128, 6);
+    EXPECT_NEAR(color[2], 208, 6);
+}
+
+TEST(Planes, TheWholeWayThroughTheProgram) {
+    TemporaryFolder folder;
+    save_colored_sphere(folder.file("in.ply"));
     const std::string gim = folder.file("a.gim"), plain = folder.file("plain.gim");
     ASSERT_EQ(run({"encode", folder.file("in.ply"), gim, "--size", "33", "--normals", "100", "--json",
                    folder.file("r.json"), "--quiet"}),
@@ -300,14 +319,8 @@ TEST(Planes, TheWholeWayThroughTheProgram) {
     ASSERT_EQ(run({"decode", gim, folder.file("o.obj"), "--normal-map", folder.file("n.png"), "--color-map",
                    folder.file("c.png")}),
               0);
-    const Input back = read_colored(folder.file("o.obj"));
-    EXPECT_TRUE(back.warnings.empty());
-    ASSERT_EQ(back.mesh.appearance.textures.size(), 1u);
-    const std::vector<Vec3> point = {Vec3(0.6, 0, 0.8)};
-    const std::vector<float> color = InputColors(back.mesh).at(point);
-    EXPECT_NEAR(color[0], 188, 6);
-    EXPECT_NEAR(color[1], 128, 6);
-    EXPECT_NEAR(color[2], 208, 6);
+    ASSERT_EQ(read_colored(folder.file("o.obj")).mesh.appearance.textures.size(), 1u);
+    expect_color_of_the_sphere(folder.file("o.obj"));
     ASSERT_EQ(run({"decode", gim, folder.file("o.exr"), "--normal-map", folder.file("n.exr"), "--color-map",
                    folder.file("c.exr")}),
               0);
@@ -318,6 +331,27 @@ TEST(Planes, TheWholeWayThroughTheProgram) {
     EXPECT_EQ(run({"decode", plain, folder.file("new.ply"), "--color-map", folder.file("new.png")}), 1);
     EXPECT_EQ(folder.names(), before);
     EXPECT_EQ(run({"decode", gim, folder.file("new.ply"), "--normal-map", folder.file("new.jpg")}), 2);
+}
+
+TEST(Planes, TilesBringThemToEveryFormat) {
+    TemporaryFolder folder;
+    save_colored_sphere(folder.file("in.ply"));
+    const std::string gim = folder.file("a.gim");
+    ASSERT_EQ(run({"encode", folder.file("in.ply"), gim, "--layout", "tiles", "--tiles", "20", "--size", "33",
+                   "--normals", "100", "--json", folder.file("r.json"), "--quiet"}),
+              0);
+    const auto report = nlohmann::json::parse(test::load_text(folder.file("r.json")));
+    ASSERT_EQ(report["planes"].size(), 2u);
+    EXPECT_GT(report["planes"][1]["psnr"], 35);
+    ASSERT_EQ(run({"decode", gim, folder.file("o.obj"), "--normal-map", folder.file("n.png"), "--color-map",
+                   folder.file("c.png")}),
+              0);
+    for (const char* name : {"o.ply", "o.glb"}) ASSERT_EQ(run({"decode", gim, folder.file(name)}), 0);
+    for (const char* name : {"o.obj", "o.ply", "o.glb"}) expect_color_of_the_sphere(folder.file(name));
+    const DecodedPicture colors = decode_picture(to_bytes(test::load_text(folder.file("c.png"))));
+    EXPECT_EQ(colors.width, report["planes"][1]["width"]);
+    EXPECT_EQ(colors.height, report["planes"][1]["height"]);
+    EXPECT_EQ(run({"info", gim}), 0);
 }
 
 }  // namespace

@@ -164,8 +164,8 @@ GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size
  * column/(width-1) of the image's level 0. A file has at most one plane of each kind for all its images.
  *   GIM_PLANE_NORMALS  the input's unit normals in object space, pointing out of the surface; 0 0 0 where undefined
  *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB
- * GIM_LAYOUT_GIM: samples of one surface point are bit-equal. GIM_LAYOUT_MCGIM: between the charts the values go on
- * smoothly, so that a texture filter may read them. GIM_LAYOUT_TILES: none yet; GIM_UNSUPPORTED_VERSION. */
+ * GIM_LAYOUT_GIM, GIM_LAYOUT_TILES: samples of one surface point are bit-equal, on sharp edges too. GIM_LAYOUT_MCGIM,
+ * GIM_LAYOUT_TILES: between charts and between tiles the values go on, so that a texture filter may read them. */
 enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
 typedef struct gim_plane_info {
     uint32_t width, height;  /* samples at this level of the plane */

@@ -1,21 +1,16 @@
-#include "encoder/charts/chart_texels.h"
+#include "encoder/planes/rectangle_texels.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
-#include "encoder/code/extend_chart.h"
 #include "encoder/surface/stretch.h"
-#include "format/chart_table.h"
 #include "format/plane_code.h"
 
 namespace gim {
 
 namespace {
-
-constexpr int kRounds = 12;  // of the extension
 
 // A triangle of a cell. Its corners are in samples, relative to the cell's first sample.
 struct PlaneTriangle {
@@ -45,18 +40,17 @@ struct PlaneTriangle {
 
 }  // namespace
 
-uint8_t chart_plane_exponent(const GeometryImage& image, uint32_t side) {
-    const double per_sample = side / std::sqrt(double(image.width()) * image.height());
+uint8_t texel_exponent(double per_sample) {
     return static_cast<uint8_t>(
         std::clamp(std::lround(std::log2(per_sample)), 0l, static_cast<long>(kMaxTexelExponent)));
 }
 
-TexelGrid chart_texels(const GeometryImage& image, uint8_t exponent) {
+TexelGrid rectangle_texels(const GeometryImage& image, uint8_t exponent) {
     const uint32_t width = image.width(), per_sample = 1u << exponent;
     const std::vector<Vec3> outside = outside_directions(image);
     TexelGrid grid;
-    grid.columns = static_cast<uint32_t>(chart_plane_side(width, exponent));
-    grid.rows = static_cast<uint32_t>(chart_plane_side(image.height(), exponent));
+    grid.columns = static_cast<uint32_t>(texels_along(width, exponent));
+    grid.rows = static_cast<uint32_t>(texels_along(image.height(), exponent));
     std::vector<bool> taken(size_t{grid.columns} * grid.rows, false);
     for (uint32_t cell = 0; cell < image.gluing.kind.size(); ++cell) {
         const uint32_t row = cell / (width - 1), column = cell % (width - 1);
@@ -81,15 +75,6 @@ TexelGrid chart_texels(const GeometryImage& image, uint8_t exponent) {
         }
     }
     return grid;
-}
-
-Pyramid<float> analyse_chart_plane(const TexelGrid& grid, std::vector<float> values, float quantizer) {
-    std::vector<uint8_t> defined(size_t{grid.columns} * grid.rows, 0);
-    for (const Texel& texel : grid.texels) defined[texel.index] = 1;
-    const uint32_t steps = halvings(grid.columns, grid.rows);
-    values =
-        extend_chart<Irreversible97>(std::move(values), defined, grid.columns, grid.rows, steps, quantizer, kRounds);
-    return analyse<Irreversible97>(std::move(values), grid.columns, grid.rows, steps);
 }
 
 }  // namespace gim
