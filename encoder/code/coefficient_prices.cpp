@@ -18,6 +18,17 @@ uint32_t magnitude_at(const Band& band, uint32_t row, uint32_t column, uint32_t 
 
 }  // namespace
 
+std::vector<Band> all_bands(std::span<const Pyramid<int32_t>> images) {
+    std::vector<Band> bands;
+    for (const Pyramid<int32_t>& image : images) {
+        for (uint32_t level = 0; level < image.steps(); ++level) {
+            const LevelBands of_level = bands_of(const_cast<Pyramid<int32_t>&>(image), level);
+            bands.insert(bands.end(), {of_level.horizontal, of_level.vertical, of_level.diagonal});
+        }
+    }
+    return bands;
+}
+
 // at(row, column, component) returns a magnitude.
 template <class At>
 uint32_t CoefficientPrices::class_of(const Band& band, uint32_t row, uint32_t column, uint32_t component,
@@ -37,22 +48,17 @@ uint32_t CoefficientPrices::class_of(const Band& band, uint32_t row, uint32_t co
     return std::min<uint32_t>(sum < 4 ? sum : 2 + static_cast<uint32_t>(std::bit_width(sum)) - 1, kClasses - 1);
 }
 
-CoefficientPrices::CoefficientPrices(std::span<const Pyramid<int32_t>> images) {
+CoefficientPrices::CoefficientPrices(std::span<const Band> bands) {
     for (auto& kind : bits_) {
         for (auto& magnitudes : kind) magnitudes.fill(kSeen);
     }
-    for (const Pyramid<int32_t>& image : images) {
-        for (uint32_t level = 0; level < image.steps(); ++level) {
-            const LevelBands bands = bands_of(const_cast<Pyramid<int32_t>&>(image), level);
-            for (const Band& band : {bands.horizontal, bands.vertical, bands.diagonal}) {
-                const auto at = [&](uint32_t r, uint32_t c, uint32_t k) { return magnitude_at(band, r, c, k); };
-                for (uint32_t row = 0; row < band.rows; ++row) {
-                    for (uint32_t column = 0; column < band.columns; ++column) {
-                        for (uint32_t k = 0; k < 3; ++k) {
-                            const uint32_t magnitude = std::min(at(row, column, k), kMagnitudes - 1);
-                            bits_[k > 0][class_of(band, row, column, k, at)][magnitude] += 1;
-                        }
-                    }
+    for (const Band& band : bands) {
+        const auto at = [&](uint32_t r, uint32_t c, uint32_t k) { return magnitude_at(band, r, c, k); };
+        for (uint32_t row = 0; row < band.rows; ++row) {
+            for (uint32_t column = 0; column < band.columns; ++column) {
+                for (uint32_t k = 0; k < 3; ++k) {
+                    const uint32_t magnitude = std::min(at(row, column, k), kMagnitudes - 1);
+                    bits_[k > 0][class_of(band, row, column, k, at)][magnitude] += 1;
                 }
             }
         }
@@ -66,6 +72,8 @@ CoefficientPrices::CoefficientPrices(std::span<const Pyramid<int32_t>> images) {
         }
     }
 }
+
+CoefficientPrices::CoefficientPrices(std::span<const Pyramid<int32_t>> images) : CoefficientPrices(all_bands(images)) {}
 
 double CoefficientPrices::bits_of_change(const Band& band, uint32_t row, uint32_t column, uint32_t component,
                                          int32_t by) const {

@@ -15,9 +15,14 @@
 
 namespace gim {
 
+// Returns the bands of all levels of images.
+std::vector<Band> all_bands(std::span<const Pyramid<int32_t>> images);
+
 class CoefficientPrices {
   public:
-    // Counts the details of all images. O(coefficients).
+    // Counts the details of all bands. O(coefficients).
+    explicit CoefficientPrices(std::span<const Band> bands);
+    // The same for all bands of images.
     explicit CoefficientPrices(std::span<const Pyramid<int32_t>> images);
 
     // Returns by how many bits a band grows if the component of one detail changes by `by`.

@@ -7,12 +7,22 @@
 #include <vector>
 
 #include "encoder/code/wavelet_analysis.h"
+#include "encoder/fit/fitter.h"
 #include "encoder/fit/image_basis.h"
+#include "encoder/image/gluing.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
 #include "format/detail_frame.h"
 
 namespace gim {
+
+// What a codec may know of a fit. The fit owns what is named.
+struct FitSetting {
+    const GridGluing& gluing;
+    const FitReference& reference;
+    const FitFrame& frame;
+    double front;  // the sign that makes the image face outwards
+};
 
 class FitCodec {
   public:
@@ -20,7 +30,7 @@ class FitCodec {
     virtual std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const = 0;
     // The samples that a decoder has of a file of the image, in the frame of the fit. mends_folds: as files do.
     virtual std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) = 0;
-    // Mends the folds that the quantizer leaves in the bands of a file. Layouts without such a repair do nothing.
+    // Mends the folds that the quantizer leaves in the bands of a file. Layouts whose files have no such bands do nothing.
     virtual void repair(Pyramid<int32_t>&, const Units&) {}
 };
 

@@ -254,7 +254,7 @@ CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mes
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
                    const Rails& rails)
     : impl_(std::make_unique<Impl>(start, reference, seed, rails)) {
-    impl_->codec = make_codec(impl_->frame);
+    impl_->codec = make_codec({impl_->gluing, impl_->reference, impl_->frame, impl_->fitter.front()});
 }
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }

@@ -24,10 +24,8 @@
 
 namespace gim {
 
-struct FitFrame;
-
-// Makes the codec of a fit, whose samples are in that frame.
-using MakeFitCodec = std::function<std::unique_ptr<FitCodec>(const FitFrame& frame)>;
+// Makes the codec of a fit, whose samples are in the setting's frame.
+using MakeFitCodec = std::function<std::unique_ptr<FitCodec>(const FitSetting& setting)>;
 
 class CodedFit {
   public:

@@ -1,34 +1,45 @@
 // The codec of tiles, as the fit sees it: images are atlases (sample_tiles.h).
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "encoder/base/result.h"
 #include "encoder/fit/fit_codec.h"
-#include "encoder/fit/fitter.h"
+#include "encoder/fit/fold_passes.h"
 #include "encoder/tiles/code_complex.h"
+#include "encoder/tiles/tile_fold_image.h"
 #include "encoder/tiles/tile_image.h"
+#include "encoder/tiles/tile_pyramid.h"
+#include "encoder/tiles/tile_responses.h"
 #include "format/container.h"
 
 namespace gim {
 
 class TileCodec final : public FitCodec {
   public:
-    // frame: of the fit. An Error names what is wrong with the complex.
-    static Result<TileCodec> make(const TileImage& tiles, const FitFrame& frame);
+    // Keeps references to what the setting names. An Error names what is wrong with the complex.
+    static Result<std::unique_ptr<TileCodec>> make(const TileImage& tiles, const FitSetting& setting);
+    TileCodec(const TileCodec&) = delete;
+    TileCodec& operator=(const TileCodec&) = delete;
 
     std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override;
     std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) override;
+    // Mends the folds that the quantizer leaves in the integers of a file of such an image (fold_passes.h).
+    void repair(TilePyramid<int32_t>& pyramid, const Units& units);
 
   private:
-    TileCodec(CodedComplex coded, std::vector<uint32_t> texels, const TileShape& shape, size_t texel_count,
-              const FitFrame& frame);
+    TileCodec(CodedComplex coded, TileTexels texels, const TileShape& shape, const FitSetting& setting);
+
+    TilePyramid<int32_t> quantized(const std::vector<float>& image, const Units& units) const;
+    void repair(TilePyramid<int32_t>& pyramid, const Units& units, const RepairEffort& effort);
 
     CodedComplex coded_;
-    std::vector<uint32_t> texels_;  // per place of the code: tile by tile, row by row, each in the tile's own slot
+    TileTexels texels_;
     TileShape shape_;
-    size_t texel_count_;
     FitFrame frame_;
+    TileResponses responses_;
+    FoldPasses passes_;
 };
 
 }  // namespace gim

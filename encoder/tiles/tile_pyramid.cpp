@@ -55,7 +55,7 @@ std::vector<typename Wavelet::Sample> synthesize_step(const QuadComplex& complex
     return next;
 }
 
-// One step of quantize_tiles.
+// One step of quantize_tiles or decode_tiles. The planes have the small images.
 class StepQuantizer {
   public:
     StepQuantizer(const QuadComplex& complex, const TilePlanes& planes, const DetailSteps& steps,
@@ -64,8 +64,33 @@ class StepQuantizer {
 
     // Returns the integers; puts what a decoder makes of them into the planes.
     std::vector<int32_t> run(const std::vector<float>& details) {
-        frames_.resize(details.size() / 3);
+        find_frames(details.size() / 3);
         local_ = details;
+        for_each([&](uint32_t, Orientation, uint32_t, uint32_t, size_t i) {
+            const Frame& f = frames_[i / 3];
+            into_frame(f.frame, &details[i], &local_[i]);
+            for (size_t k = 0; k < 3; ++k) local_[i + k] /= f.step[k];
+        });
+        share(local_);
+        std::vector<int32_t> integers = round();
+        put(integers);
+        return integers;
+    }
+
+    // Puts what a decoder makes of the integers into the planes.
+    void decode(const std::vector<int32_t>& integers) {
+        find_frames(integers.size() / 3);
+        put(integers);
+    }
+
+  private:
+    struct Frame {
+        DetailFrame frame;
+        std::array<float, 3> step;
+    };
+
+    void find_frames(size_t count) {
+        frames_.resize(count);
         const TileFrames field(complex_, planes_, samples_.data());
         for_each([&](uint32_t tile, Orientation orientation, uint32_t row, uint32_t column, size_t i) {
             Frame& f = frames_[i / 3];
@@ -75,24 +100,16 @@ class StepQuantizer {
                 f.frame = field.at(tile, orientation, row, column, steps_.cell_area);
                 steps_in(f.frame, steps_, orientation, f.step.data());
             }
-            into_frame(f.frame, &details[i], &local_[i]);
-            for (size_t k = 0; k < 3; ++k) local_[i + k] /= f.step[k];
         });
-        share(local_);
-        std::vector<int32_t> integers = round();
+    }
+
+    void put(const std::vector<int32_t>& integers) const {
         for_each([&](uint32_t tile, Orientation, uint32_t, uint32_t, size_t i) {
             float local[3];
             for (size_t k = 0; k < 3; ++k) local[k] = dequantize(integers[i + k], frames_[i / 3].step[k]);
             out_of_frame(frames_[i / 3].frame, local, &samples_[place_of(tile, i)]);
         });
-        return integers;
     }
-
-  private:
-    struct Frame {
-        DetailFrame frame;
-        std::array<float, 3> step;
-    };
 
     size_t place_of(uint32_t tile, size_t i) const {
         return tile * planes_.size() + static_cast<size_t>(planes_.horizontal()) + (i - tile * planes_.details());
@@ -221,6 +238,24 @@ TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape&
     return out;
 }
 
+template <class Wavelet>
+std::vector<std::vector<float>> decode_tiles(const QuadComplex& complex, const TileShape& shape,
+                                             const TilePyramid<int32_t>& pyramid, const DetailCoding& coding) {
+    const uint32_t steps = pyramid.steps();
+    std::vector<float> base;
+    for (const int32_t q : pyramid.base)
+        base.push_back(static_cast<float>(q) * tile_base_step(shape, coding.quantizer));
+    std::vector<std::vector<float>> levels = {planes_of_base(complex, base)};
+    for (uint32_t step = 1; step <= steps; ++step) {
+        const TilePlanes planes(1u << (step - 1));
+        const DetailSteps detail_steps = tile_steps_at(shape, coding, steps - step + 1);
+        std::vector<float> samples = levels.back();
+        StepQuantizer(complex, planes, detail_steps, samples).decode(pyramid.details[step - 1]);
+        levels.push_back(synthesize_step<Wavelet>(complex, planes, step == steps, std::move(samples)));
+    }
+    return levels;
+}
+
 template void analyse_step<Tiles97>(const QuadComplex&, const TilePlanes&, float*, float*);
 template void analyse_step<TilesSharp>(const QuadComplex&, const TilePlanes&, float*, float*);
 template TilePyramid<int32_t> analyse_tiles<Tiles53>(const QuadComplex&, std::vector<int32_t>, uint32_t);
@@ -234,5 +269,9 @@ template TilePyramid<int32_t> quantize_tiles<Tiles97>(const QuadComplex&, const 
 template TilePyramid<int32_t> quantize_tiles<TilesSharp>(const QuadComplex&, const TileShape&,
                                                          const TilePyramid<float>&, const DetailCoding&,
                                                          std::vector<float>*);
+template std::vector<std::vector<float>> decode_tiles<Tiles97>(const QuadComplex&, const TileShape&,
+                                                               const TilePyramid<int32_t>&, const DetailCoding&);
+template std::vector<std::vector<float>> decode_tiles<TilesSharp>(const QuadComplex&, const TileShape&,
+                                                                  const TilePyramid<int32_t>&, const DetailCoding&);
 
 }  // namespace gim

@@ -78,4 +78,10 @@ TilePyramid<int32_t> quantize_tiles(const QuadComplex& complex, const TileShape&
                                     const TilePyramid<float>& pyramid, const DetailCoding& coding,
                                     std::vector<float>* decoded = nullptr);
 
+// What a decoder makes of such integers, up to rounding: for each step the planes of all tiles with the small images that
+// it begins with, coarsest first; then the grids. Details on edges are read from the tile of the lower half-edge.
+template <class Wavelet>
+std::vector<std::vector<float>> decode_tiles(const QuadComplex& complex, const TileShape& shape,
+                                             const TilePyramid<int32_t>& pyramid, const DetailCoding& coding);
+
 }  // namespace gim

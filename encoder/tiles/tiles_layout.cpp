@@ -24,9 +24,12 @@ class TilesLayout final : public LayoutImages {
 
     Result<void> make_fit(const Mesh& mesh, uint64_t seed) {
         Result<void> made;
-        const MakeFitCodec make = [&](const FitFrame& frame) -> std::unique_ptr<FitCodec> {
-            auto codec = TileCodec::make(made_.tiles, frame);
-            if (codec.ok()) return std::make_unique<TileCodec>(std::move(codec.value()));
+        const MakeFitCodec make = [&](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
+            auto codec = TileCodec::make(made_.tiles, setting);
+            if (codec.ok()) {
+                codec_ = codec.value().get();
+                return std::move(codec.value());
+            }
             made = codec.error();
             return nullptr;
         };
@@ -48,6 +51,7 @@ class TilesLayout final : public LayoutImages {
 
     void fit(const CodingParameters& parameters, CodedFit::Effort effort, StageClock& clock) override {
         clock.begin(Stage::kFit);
+        is_rough_ = effort == CodedFit::Effort::kSearch;
         if (!units_) {
             const auto units = tile_units(made_.tiles, parameters.bits);
             units_ = units.value();  // the complex was checked when the fit was made
@@ -66,7 +70,10 @@ class TilesLayout final : public LayoutImages {
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
         CodingParameters with_units = parameters;
         with_units.units = units_;
-        return tiles_writer(made_.tiles, with_units);
+        if (is_rough_ || !codec_) return tiles_writer(made_.tiles, with_units);
+        return tiles_writer(made_.tiles, with_units, [this](TilePyramid<int32_t>& pyramid, const Units& units) {
+            codec_->repair(pyramid, units);
+        });
     }
 
     std::vector<uint8_t> plane_exponents(uint32_t side) const override {
@@ -89,7 +96,9 @@ class TilesLayout final : public LayoutImages {
 
     MadeTiles made_;
     std::vector<uint32_t> sample_at_;  // per texel of the atlas
+    bool is_rough_ = false;            // after a quick fit
     std::optional<CodedFit> fit_;
+    TileCodec* codec_ = nullptr;  // of the fit
     std::optional<Units> units_;  // of the first fit
 };
 

@@ -8,7 +8,6 @@
 #include "encoder/code/file_units.h"
 #include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/code_tiles.h"
-#include "encoder/tiles/tile_pyramid.h"
 #include "format/tile_atlas.h"
 #include "format/tile_lifting.h"
 
@@ -64,7 +63,8 @@ Units units_of(std::span<const Vec3> grids, uint32_t side, uint32_t bits) {
 // Codes the tiles' part of a file.
 class TileLevelCoder final : public LevelCoder {
   public:
-    TileLevelCoder(const TileImage& image, const QuadComplex& complex, const CodingParameters& parameters);
+    TileLevelCoder(const TileImage& image, const QuadComplex& complex, const CodingParameters& parameters,
+                   RepairTiles repair);
 
     Header header() const override { return header_; }
     std::vector<uint8_t> seam_payload() const override { return coded_.payload; }
@@ -77,6 +77,7 @@ class TileLevelCoder final : public LevelCoder {
     CodedComplex coded_;
     TilePyramid<int32_t> lossless_;
     TilePyramid<float> lossy_;
+    RepairTiles repair_;
 };
 
 // The coarsest level has about as many samples as a square of the base side.
@@ -92,8 +93,9 @@ void subtract_middle(std::vector<Sample>& base, uint32_t bits) {
     for (Sample& v : base) v -= static_cast<Sample>(1 << (bits - 1));
 }
 
-TileLevelCoder::TileLevelCoder(const TileImage& image, const QuadComplex& complex, const CodingParameters& parameters)
-    : coded_(code_complex(image, complex)) {
+TileLevelCoder::TileLevelCoder(const TileImage& image, const QuadComplex& complex, const CodingParameters& parameters,
+                               RepairTiles repair)
+    : coded_(code_complex(image, complex)), repair_(parameters.lossless ? RepairTiles() : std::move(repair)) {
     const QuadComplex& view = coded_.complex.view();
     header_.layout = FileLayout::kTiles;
     header_.coding = parameters.lossless ? Coding::kLossless : Coding::kLossy;
@@ -126,6 +128,7 @@ TilePyramid<int32_t> TileLevelCoder::quantized(const Header& header) const {
 
 std::vector<std::vector<uint8_t>> TileLevelCoder::code_levels(const Header& header) const {
     TilePyramid<int32_t> pyramid = quantized(header);
+    if (repair_) repair_(pyramid, header);
     return code_tiles(coded_.complex.view(), pyramid, header.level_count, tile_kind_of(header));
 }
 
@@ -140,11 +143,12 @@ TileShape shape_of(const TileImage& image, const QuadComplex& complex, bool loss
             !image.sharp.empty()};
 }
 
-Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters) {
+Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters, RepairTiles repair) {
     GIM_CHECK(check(image, parameters));
     GIM_TRY(complex, complex_of(image.quads, image.vertices));
     GIM_CHECK(check_count(image, complex.view()));
-    return FileWriter(std::make_unique<TileLevelCoder>(image, complex.view(), parameters), parameters);
+    return FileWriter(std::make_unique<TileLevelCoder>(image, complex.view(), parameters, std::move(repair)),
+                      parameters);
 }
 
 Result<std::vector<uint8_t>> write_tiles(const TileImage& image, const CodingParameters& parameters) {

@@ -3,17 +3,22 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "encoder/base/result.h"
 #include "encoder/code/file_writer.h"
 #include "encoder/tiles/tile_image.h"
+#include "encoder/tiles/tile_pyramid.h"
 
 namespace gim {
 
+// Changes the integers of a lossy file before they are coded.
+using RepairTiles = std::function<void(TilePyramid<int32_t>& pyramid, const Units& units)>;
+
 // Positions must be finite, and the quads the base of a surface: oriented, each edge between two tiles or on a boundary,
-// the tiles at a vertex one fan. Otherwise an Error names the tile.
-Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters);
+// the tiles at a vertex one fan. Otherwise an Error names the tile. repair: lossy; empty: nothing does.
+Result<FileWriter> tiles_writer(const TileImage& image, const CodingParameters& parameters, RepairTiles repair = {});
 Result<std::vector<uint8_t>> write_tiles(const TileImage& image, const CodingParameters& parameters);
 
 // Returns the shape that the header of a file has. complex: that of the image, in any order.

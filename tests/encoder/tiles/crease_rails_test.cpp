@@ -122,9 +122,8 @@ TEST(CreaseRails, SamplesStayOnThemInEveryFit) {
     ASSERT_TRUE(tiles.tiles.is_sharp);
     expect_on_rails(tiles.atlas.positions, tiles.rails, half_of(box));
 
-    const auto make = [&](const FitFrame& frame) -> std::unique_ptr<FitCodec> {
-        auto codec = TileCodec::make(tiles.tiles, frame);
-        return std::make_unique<TileCodec>(std::move(codec.value()));
+    const auto make = [&](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
+        return std::move(TileCodec::make(tiles.tiles, setting).value());
     };
     CodedFit fit(tiles.atlas, make, box, 1, tiles.rails);
     Units units = tile_units(tiles.tiles, 12).value();

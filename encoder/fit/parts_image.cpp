@@ -1,0 +1,128 @@
+#include "encoder/fit/parts_image.h"
+
+#include "encoder/code/code_bands.h"
+
+namespace gim {
+
+namespace {
+
+// Returns the sample of an image of this width that a part's sample is; kNone if it is not defined.
+uint32_t sample_of_part(const CodedPart& part, uint32_t width, uint32_t row, uint32_t column) {
+    if (!part.defined.empty() && !part.defined[size_t{row} * part.columns + column]) return kNone;
+    return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * width +
+           static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
+}
+
+}  // namespace
+
+CodedImage::Levels ImageParts::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
+    CodedImage::Levels levels;
+    for (size_t p = 0; p < parts.size(); ++p)
+        levels.push_back(decode_bands(bands[p], detail_coding_of(units), parts[p].seams));
+    return levels;
+}
+
+std::vector<float> ImageParts::samples(const CodedImage::Levels& levels, const Units& units) const {
+    std::vector<float> image(3 * gluing.sample_count());
+    for (size_t p = 0; p < parts.size(); ++p) {
+        const CodedPart& part = parts[p];
+        const std::vector<float>& box = levels[p].back();
+        for (uint32_t row = 0, i = 0; row < part.rows; ++row) {
+            for (uint32_t column = 0; column < part.columns; ++column, ++i) {
+                const uint32_t to = sample_of_part(part, gluing.width, row, column);
+                if (to == kNone) continue;
+                for (size_t k = 0; k < 3; ++k)
+                    image[3 * size_t{to} + k] = box[3 * size_t{i} + k] + static_cast<float>(1 << (units.bits - 1));
+            }
+        }
+    }
+    close(image);
+    return image;
+}
+
+PartsImage::PartsImage(const ImageParts& parts, std::vector<DetailResponses>& responses,
+                       std::span<Pyramid<int32_t>> bands, const Units& units)
+    : parts_(parts), responses_(responses), bands_(bands), units_(units) {
+    for (size_t p = 0; p < parts_.parts.size(); ++p) {
+        std::vector<Depth>& depths = depths_.emplace_back();
+        const uint32_t steps = bands[p].steps();
+        for (uint32_t depth = 1; depth <= steps; ++depth) {
+            depths.push_back({OwnSharedRim(parts_.parts[p].seams, bands[p].columns_at(steps - depth + 1)), {}});
+            const SharedRim rim = depths.back().rim.view();
+            rim.for_each_copy([&](Orientation orientation, uint32_t row, uint32_t column) {
+                depths.back().copies.push_back({rim.source_of(orientation, row, column), {orientation, row, column}});
+            });
+        }
+    }
+    find_owners();
+}
+
+void PartsImage::find_owners() {
+    owner_.assign(parts_.gluing.sample_count(), 0);
+    if (parts_.parts.size() == 1) return;
+    for (uint32_t p = 0; p < parts_.parts.size(); ++p) {
+        const CodedPart& part = parts_.parts[p];
+        for (uint32_t row = 0; row < part.rows; ++row) {
+            for (uint32_t column = 0; column < part.columns; ++column) {
+                const uint32_t v = sample_of_part(part, parts_.gluing.width, row, column);
+                if (v != kNone) owner_[v] = p;
+            }
+        }
+    }
+}
+
+DetailFrame PartsImage::frame(const Levels& levels, const PlaceInPart& place) const {
+    const Pyramid<int32_t>& pyramid = bands_[place.part];
+    const uint32_t e = pyramid.steps() - place.depth + 1;
+    const FrameField field(levels[place.part][e - 1].data(), low_count(pyramid.columns_at(e)),
+                           low_count(pyramid.rows_at(e)), steps_at(place.depth).cell_area);
+    return field.at(place.orientation, place.row, place.column);
+}
+
+Band PartsImage::band(const PlaceInPart& place) {
+    Pyramid<int32_t>& pyramid = bands_[place.part];
+    return bands_of(pyramid, pyramid.steps() - place.depth).of(place.orientation);
+}
+
+std::vector<CellInPart> PartsImage::parts_at(uint32_t cell) const {
+    const GridGluing& gluing = parts_.gluing;
+    uint32_t part = 0;
+    for (const uint32_t v : gluing.corners(cell)) {
+        if (!gluing.is_defined(v)) continue;
+        part = owner_[v];
+        break;
+    }
+    return {{part, cell / (gluing.width - 1) + 0.5 - parts_.parts[part].row,
+             cell % (gluing.width - 1) + 0.5 - parts_.parts[part].column}};
+}
+
+PlaceInPart PartsImage::source_of(const PlaceInPart& place) const {
+    const SharedRim rim = depths_[place.part][place.depth - 1].rim.view();
+    if (!rim.is_copy(place.orientation, place.row, place.column)) return place;
+    const DetailPlace from = rim.source_of(place.orientation, place.row, place.column);
+    return {place.part, place.depth, from.orientation, from.row, from.column};
+}
+
+const WeightedSamples& PartsImage::moved_by(const PlaceInPart& source) {
+    moved_.clear();
+    const CodedPart& part = parts_.parts[source.part];
+    DetailResponses& responses = responses_[source.part];
+    add_block(part, responses.at(source.depth, source.orientation, source.row, source.column));
+    for (const auto& [from, copy] : depths_[source.part][source.depth - 1].copies) {
+        if (from.orientation == source.orientation && from.row == source.row && from.column == source.column)
+            add_block(part, responses.at(source.depth, copy.orientation, copy.row, copy.column));
+    }
+    return moved_;
+}
+
+void PartsImage::add_block(const CodedPart& part, const ResponseBlock& block) {
+    const float* weight = block.weights;
+    for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
+        for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
+            const uint32_t v = sample_of_part(part, parts_.gluing.width, row, column);
+            if (v != kNone) moved_.push_back({v, *weight});
+        }
+    }
+}
+
+}  // namespace gim
