@@ -173,10 +173,10 @@ void draw_surface(const TriangleMesh& mesh, const Scene& scene, bool wire, const
         if (!is_finite(mesh, t)) continue;
         const Vector3d facet = (scene.seen[t[1]] - scene.seen[t[0]]).cross(scene.seen[t[2]] - scene.seen[t[0]]);
         std::array<Vector3d, 3> normal = {facet, facet, facet};
-        const auto& n = mesh.shading.empty() ? t : mesh.shading.corners[f];
+        const auto& normals = mesh.shading.empty() ? t : mesh.shading.corners[f];
         for (size_t k = 0; k < 3 && !scene.normals.empty(); ++k) {
-            if (n[k] == Shading::kFlat || !scene.normals[n[k]].allFinite()) continue;
-            if (scene.normals[n[k]].norm() > 0) normal[k] = scene.normals[n[k]].normalized();
+            if (normals[k] == Shading::kFlat || !scene.normals[normals[k]].allFinite()) continue;
+            if (scene.normals[normals[k]].norm() > 0) normal[k] = scene.normals[normals[k]].normalized();
         }
         // The triangle decides which side is seen, because an interpolated normal may lean over the silhouette.
         const bool front = facet.dot(Vector3d(0, 0, kDistance) - scene.seen[t[0]]) >= 0;

@@ -72,7 +72,11 @@ void add_group_normals(const std::vector<uint32_t>& groups, PolygonSoup& soup) {
         of_face.push_back(face_normal(soup, first, size));
         first += size;
     }
-    soup.corner_normals.assign(soup.corners.size(), Shading::kFlat);
+    soup.corner_normals.clear();
+    for (uint32_t f = 0; f < groups.size(); ++f) {
+        soup.corner_normals.insert(soup.corner_normals.end(), soup.sizes[f], f);
+        soup.normals.push_back(unit(of_face[f]));
+    }
     const std::vector<Corner> corners = corners_of_groups(groups, soup);
     for (size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
         Vector sum = {};

@@ -203,7 +203,7 @@ Bytes write_obj(std::span<const DecodedImage> images, const std::string& materia
                                              1.0F - texture_coordinate(t[1], image.colors.rows)};
             append_row(out, "vt", uv);
         }
-        const ShadedMesh shaded = shaded_mesh(image, false);
+        const ShadedMesh shaded = shaded_mesh(image, true);
         for (size_t v = 0; v < shaded.normals.size(); v += 3) append_row(out, "vn", shaded.normals.subspan(v, 3));
         for (size_t t = 0; t < image.triangles.size(); t += 3) {
             out.push_back('f');

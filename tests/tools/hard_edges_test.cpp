@@ -282,8 +282,8 @@ double missed_length(const std::vector<Segment>& of, const std::vector<Segment>&
 }
 
 nlohmann::json encode_tiles(const std::string& from, const std::string& to) {
-    const Outcome run =
-        gim({"encode", from, to, "--layout", "tiles", "--quality", "80", "--quiet", "--json", to + ".json"});
+    const Outcome run = gim({"encode", from, to, "--layout", "tiles", "--quality", "60", "--samples", "3000", "--quiet",
+                             "--json", to + ".json"});
     EXPECT_EQ(run.status, 0) << run.err;
     return run.status == 0 ? nlohmann::json::parse(test::load_text(to + ".json")) : nlohmann::json();
 }
@@ -350,7 +350,8 @@ TEST(HardEdges, SquaresKeepTheirBytes) {
 TEST(HardEdges, AreInTheSummary) {
     const TemporaryFolder folder;
     save(folder.file("part.obj"), obj_with_normals(ShadedPart().mesh));
-    const Outcome run = gim({"encode", folder.file("part.obj"), folder.file("part.gim"), "--layout", "tiles"});
+    const Outcome run =
+        gim({"encode", folder.file("part.obj"), folder.file("part.gim"), "--layout", "tiles", "--samples", "3000"});
     ASSERT_EQ(run.status, 0) << run.err;
     const std::string count = std::to_string(ShadedPart::kHardEdges);
     EXPECT_NE(run.out.find(count + " in the input, " + count + " kept sharp"), std::string::npos) << run.out;
