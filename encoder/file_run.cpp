@@ -30,6 +30,10 @@ struct FileRun::Impl {
     Result<Encoded> finish(const Contest& contest) {
         clock_.begin(Stage::kCode);
         GIM_TRY(bytes, search_.run(contest));
+        if (images_->is_fitted_to_quantizer()) {
+            clock_.begin(Stage::kPlanes);
+            bytes = plane_maker_.renew(std::move(bytes), *images_);
+        }
         Encoded encoded{std::move(bytes), std::move(report_)};
         images_->describe(encoded.report);
         GIM_CHECK(measure(encoded));

@@ -39,6 +39,14 @@ Payload make_text_payload(const std::string& text) {
     return p;
 }
 
+std::vector<uint8_t> join(const Header& header, const std::vector<Payload>& payloads) {
+    std::vector<Chunk> chunks;
+    for (const Payload& p : payloads) chunks.push_back(p.chunk);
+    std::vector<uint8_t> file = serialize_header(header, chunks);
+    for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
+    return file;
+}
+
 // Returns the file with its header changed by change(header). Returns it unchanged if that returns false.
 template <class Change>
 std::vector<uint8_t> with_header(std::span<const uint8_t> file, const Change& change) {
@@ -66,11 +74,27 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
     for (const CodedPlane& plane : planes) payloads.push_back(make_payload(plane.type, true, plane.payload));
     if (!text.empty()) payloads.push_back(make_text_payload(text));
 
-    std::vector<Chunk> chunks;
-    for (const Payload& p : payloads) chunks.push_back(p.chunk);
-    std::vector<uint8_t> file = serialize_header(header, chunks);
-    for (const Payload& p : payloads) file.insert(file.end(), p.bytes.begin(), p.bytes.end());
-    return file;
+    return join(header, payloads);
+}
+
+std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<const CodedPlane> planes) {
+    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
+    Header header;
+    if (parse_header(file, no_limits, &header) != Status::kOk) return {file.begin(), file.end()};
+    std::vector<Payload> payloads;
+    ChunkWalk walk(header);
+    Chunk chunk;
+    for (uint64_t offset = 0; walk.next(&chunk, &offset);) {
+        const auto plane =
+            std::find_if(planes.begin(), planes.end(), [&](const CodedPlane& p) { return p.type == chunk.type; });
+        if (plane != planes.end()) {
+            payloads.push_back(make_payload(plane->type, true, plane->payload));
+            continue;
+        }
+        const auto begin = file.begin() + static_cast<ptrdiff_t>(offset);
+        payloads.push_back({chunk, {begin, begin + static_cast<ptrdiff_t>(chunk.size)}});
+    }
+    return join(header, payloads);
 }
 
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {

@@ -22,6 +22,9 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text);
 
+// Returns the file with these planes in place of its own ones of the same types.
+std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<const CodedPlane> planes);
+
 // Returns the file with the measured PSNR of each level (finest first, dB) in its header. The file must have room for
 // them (CodingParameters::level_psnr). Its size stays the same.
 std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr);

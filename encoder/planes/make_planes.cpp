@@ -68,6 +68,13 @@ CodedPlane code(const AnalysedPlane& plane, double quality) {
 
 }  // namespace
 
+// Chunks without a payload, to tell how large the rest of a file is.
+std::vector<CodedPlane> empty_planes(const std::vector<AnalysedPlane>& planes) {
+    std::vector<CodedPlane> empty;
+    for (const AnalysedPlane& plane : planes) empty.push_back({plane_type(static_cast<uint32_t>(plane.kind)), {}});
+    return empty;
+}
+
 struct PlaneMaker::Impl {
     const Mesh& clean;
     const TriangleMesh& input;
@@ -131,17 +138,19 @@ struct PlaneMaker::Impl {
     }
 };
 
-std::vector<CodedPlane> code_to_budget(const std::vector<AnalysedPlane>& planes, const EncodeOptions& options) {
-    const RateTarget& rate = options.rate;
+size_t bytes_of(const std::vector<CodedPlane>& planes) {
+    size_t bytes = 0;
+    for (const CodedPlane& plane : planes) bytes += plane.payload.size();
+    return bytes;
+}
+
+// Takes the best quality with which the planes have at most so many bytes, but none above the one asked for.
+std::vector<CodedPlane> code_within(double most_bytes, const std::vector<AnalysedPlane>& planes,
+                                    const EncodeOptions& options) {
     for (double quality = plane_quality(options);; quality -= 5) {
         std::vector<CodedPlane> coded;
-        size_t bytes = 0;
-        for (const AnalysedPlane& plane : planes) {
-            coded.push_back(code(plane, quality));
-            bytes += coded.back().payload.size();
-        }
-        const bool fits = rate.kind != RateTarget::Kind::kBytes || 2.0 * static_cast<double>(bytes) <= rate.value;
-        if (fits || quality <= 0) return coded;
+        for (const AnalysedPlane& plane : planes) coded.push_back(code(plane, quality));
+        if (static_cast<double>(bytes_of(coded)) <= most_bytes || quality <= 0) return coded;
     }
 }
 
@@ -157,7 +166,23 @@ bool PlaneMaker::wants_any() const { return impl_->source.has_value(); }
 
 std::vector<CodedPlane> PlaneMaker::make(const PlaneImages& images) const {
     if (!wants_any()) return {};
-    return code_to_budget(impl_->analyse_all(images), impl_->options);
+    const RateTarget& rate = impl_->options.rate;
+    const double most = rate.kind == RateTarget::Kind::kBytes ? rate.value / 2 : HUGE_VAL;
+    return code_within(most, impl_->analyse_all(images), impl_->options);
+}
+
+std::vector<uint8_t> PlaneMaker::renew(std::vector<uint8_t> file, const PlaneImages& images) const {
+    if (!wants_any()) return file;
+    const RateTarget& rate = impl_->options.rate;
+    const std::vector<AnalysedPlane> planes = impl_->analyse_all(images);
+    if (rate.kind != RateTarget::Kind::kBytes)
+        return replace_planes(file, code_within(HUGE_VAL, planes, impl_->options));
+    // Chunks of other sizes may change the index by a few bytes.
+    constexpr double kIndexSlack = 16;
+    const std::vector<uint8_t> bare = replace_planes(file, empty_planes(planes));
+    const double most = std::min(rate.value / 2, rate.value - double(bare.size()) - kIndexSlack);
+    std::vector<uint8_t> renewed = replace_planes(file, code_within(most, planes, impl_->options));
+    return double(renewed.size()) <= std::max(rate.value, double(file.size())) ? renewed : file;
 }
 
 Result<std::vector<PlaneReport>> PlaneMaker::measure(std::span<const uint8_t> file) const {

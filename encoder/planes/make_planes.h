@@ -27,6 +27,10 @@ class PlaneMaker {
     // their quality is lowered if necessary. O(texels log F).
     std::vector<CodedPlane> make(const PlaneImages& images) const;
 
+    // Returns a finished file of the images with its planes made again: the fit has moved samples since they were made.
+    // Keeps to a --bytes target. O(texels log F).
+    std::vector<uint8_t> renew(std::vector<uint8_t> file, const PlaneImages& images) const;
+
     // Compares the planes of a complete file with the input.
     Result<std::vector<PlaneReport>> measure(std::span<const uint8_t> file) const;
 

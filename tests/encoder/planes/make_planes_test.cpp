@@ -158,6 +158,31 @@ TEST(MakePlanes, TexturesAreResampled) {
     EXPECT_GT(encoded.value().report.planes[0].psnr, 30);
 }
 
+// The fit to the quantizer slides samples along the surface. Colours must not slide with them.
+TEST(MakePlanes, AFitToTheQuantizerLeavesColorsAtTheirPlaces) {
+    TriangleMesh mesh = textured_sphere();
+    TextureImage& image = mesh.appearance.textures[0];
+    for (uint32_t y = 0; y < image.height; ++y) {
+        for (uint32_t x = 0; x < image.width; ++x)
+            for (size_t k = 0; k < 3; ++k)
+                image.rgb[3 * (size_t{y} * image.width + x) + k] = (x / 4 + y / 4) % 2 ? 220 : 30;
+    }
+    for (const Layout layout : {Layout::kGim, Layout::kTiles}) {
+        EncodeOptions options = small_options();
+        options.layout = layout;
+        options.tiles = 20;
+        options.samples = 2000;
+        options.color_side = 257;
+        options.rate = {RateTarget::Kind::kQuality, 50};
+        options.plane_quality = 85;
+        const auto stiff = encode(mesh, options);
+        options.fit = FitStrength::kAuto;
+        const auto fitted = encode(mesh, options);
+        ASSERT_TRUE(stiff.ok() && fitted.ok());
+        EXPECT_GT(fitted.value().report.planes[0].psnr, stiff.value().report.planes[0].psnr - 2);
+    }
+}
+
 TEST(MakePlanes, ColorsCanBeTurnedOff) {
     EncodeOptions options = small_options();
     options.color_side = 0;
