@@ -41,6 +41,12 @@ Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional
     return *started->estimate;
 }
 
+Result<Estimate> LayoutRuns::first_estimate() {
+    if (layout() != Layout::kTiles) return estimate_of(side_variants(options_).front(), {});
+    GIM_TRY(tried, try_usual_tiles(runs({}), options_, tileable_.has_creases()));
+    return tried[0].estimate;
+}
+
 Result<Estimate> LayoutRuns::estimate() {
     if (layout() == Layout::kTiles) {
         GIM_TRY(tried, try_tiles(runs({}), options_, tileable_.has_creases()));

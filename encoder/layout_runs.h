@@ -35,6 +35,10 @@ class LayoutRuns {
 
     Layout layout() const { return layout_.layout; }
 
+    // Makes the images of the variant that comes first, and fits them briefly. Returns what it costs. Only for targets that
+    // are searched for. The images wait for estimate() and best().
+    Result<Estimate> first_estimate();
+
     // Makes the images of the variants and fits them briefly. Returns what the best one costs. Only for targets that are
     // searched for. The images wait for best().
     Result<Estimate> estimate();

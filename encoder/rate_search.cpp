@@ -58,15 +58,18 @@ struct RateSearch::Impl {
     Result<Estimate> estimate(std::optional<double> near) {
         const double quantizer = near.value_or(first_quantizer_);
         if (images_.is_fitted_to_quantizer()) {
-            GIM_TRY(approached, approach(quantizer));
+            GIM_TRY(approached, approach(quantizer, near.has_value()));
             approached_ = std::move(approached);
         } else {
             parameters_.quantizer = quantizer;
             GIM_TRY(writer, images_.writer(parameters_));
-            approached_ = Approached{writer.write(quantizer), quantizer};
+            approached_ = Approached{writer.write(quantizer), quantizer, {}};
         }
-        GIM_TRY(comparison, compare_file(approached_->bytes, reference_, quick_));
-        return Estimate{log_bytes(double(approached_->bytes.size()), comparison.psnr), approached_->quantizer};
+        if (!approached_->psnr) {
+            GIM_TRY(comparison, compare_file(approached_->bytes, reference_, quick_));
+            approached_->psnr = comparison.psnr;
+        }
+        return Estimate{log_bytes(double(approached_->bytes.size()), *approached_->psnr), approached_->quantizer};
     }
 
     Result<Bytes> run(const Contest& contest) {
@@ -77,15 +80,20 @@ struct RateSearch::Impl {
 
   private:
     struct Approached {
-        Bytes bytes;           // the last file
-        double quantizer = 0;  // the next one to try
+        Bytes bytes;                 // the last file
+        double quantizer = 0;        // the next one to try
+        std::optional<double> psnr;  // of that file; nothing if it was not compared
+    };
+    struct Room {
+        double octaves;
+        std::optional<double> psnr;
     };
 
     Result<Bytes> approach_and_code() {
         if (!images_.is_fitted_to_quantizer()) return search(first_quantizer_);
         if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(first_quantizer_, CodedFit::Effort::kFinal);
         if (approached_) return fit_to_target(approached_->quantizer);
-        GIM_TRY(approached, approach(first_quantizer_));
+        GIM_TRY(approached, approach(first_quantizer_, false));
         return fit_to_target(approached.quantizer);
     }
 
@@ -128,15 +136,15 @@ struct RateSearch::Impl {
     }
 
     // Estimates by how many octaves the quantizer could be coarser and still meet the target plus half its slack.
-    Result<double> room(const Bytes& bytes) const {
+    Result<Room> room(const Bytes& bytes) const {
         RateTarget wanted = target_;
         if (target_.kind == RateTarget::Kind::kBytes) {
             wanted.value *= 1 - Values::kFittedBytesSlack / 2;
-            return octaves_to(wanted, double(bytes.size()), 0);
+            return Room{octaves_to(wanted, double(bytes.size()), 0), {}};
         }
         if (target_.kind == RateTarget::Kind::kPsnr) wanted.value += Values::kFittedPsnrSlack / 2;
         GIM_TRY(comparison, compare_file(bytes, reference_, quick_));
-        return octaves_to(wanted, 0, comparison.psnr);
+        return Room{octaves_to(wanted, 0, comparison.psnr), comparison.psnr};
     }
 
     // Estimates whether a search that goes on from this file would lose against another side. over: by how much of its
@@ -149,16 +157,18 @@ struct RateSearch::Impl {
         return contest_.rival_bytes > 0 && at_target > (1 + over) * contest_.rival_bytes;
     }
 
-    // Approaches the target's quantizer by quick fits.
-    Result<Approached> approach(double quantizer) {
+    // Approaches the target's quantizer by quick fits. afresh: each begins anew. Where several images are compared, one whose
+    // last fit continues another seems to take some 6 % fewer bytes than one whose fit does not.
+    Result<Approached> approach(double quantizer, bool afresh) {
         NextQuantizer next(Values::kMostStep);
-        Approached approached{{}, quantizer};
+        Approached approached{{}, quantizer, {}};
         for (int k = 0; k < Values::kMostApproaches; ++k) {
+            if (afresh) images_.restart_fit();
             GIM_TRY(bytes, fitted_file(approached.quantizer, CodedFit::Effort::kSearch));
-            GIM_TRY(octaves, room(bytes));
-            if (is_losing(bytes, octaves, next.slope(), Values::kQuickExcess)) return lost();
-            approached = {std::move(bytes), next.after(approached.quantizer, octaves)};
-            if (std::abs(octaves) < Values::kNear) break;
+            GIM_TRY(left, room(bytes));
+            if (is_losing(bytes, left.octaves, next.slope(), Values::kQuickExcess)) return lost();
+            approached = {std::move(bytes), next.after(approached.quantizer, left.octaves), left.psnr};
+            if (std::abs(left.octaves) < Values::kNear) break;
         }
         return approached;
     }
@@ -170,8 +180,9 @@ struct RateSearch::Impl {
         NextQuantizer next(Values::kMostFinalStep);
         for (int k = 0; k < Values::kMostFits; ++k) {
             GIM_TRY(bytes, finally_fitted_file(quantizer));
-            GIM_TRY(octaves, room(bytes));
-            GIM_TRY(is_met, meets_target(bytes));
+            GIM_TRY(left, room(bytes));
+            const double octaves = left.octaves;
+            GIM_TRY(is_met, meets_target(bytes, left.psnr));
             const double tried = quantizer;
             quantizer = next.after(tried, octaves);
             const bool is_losing_now = is_losing(bytes, octaves, next.slope(), Values::kFinalExcess);
@@ -186,9 +197,11 @@ struct RateSearch::Impl {
 
     static Error lost() { return {Stage::kCode, "another image takes fewer bytes"}; }
 
-    Result<bool> meets_target(const Bytes& bytes) const {
+    // psnr: of few samples. Where that is far below the target, no more samples are taken.
+    Result<bool> meets_target(const Bytes& bytes, std::optional<double> psnr) const {
         if (target_.kind == RateTarget::Kind::kBytes)
             return double(bytes.size()) <= target_.value ? has_area(bytes) : Result<bool>(false);
+        if (psnr && *psnr < target_.value - Values::kPsnrOfFewSamples) return false;
         GIM_TRY(comparison, compare_file(bytes, reference_, full_));
         return comparison.psnr >= target_.value;
     }

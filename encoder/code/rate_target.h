@@ -58,6 +58,8 @@ struct RateSearchValues {
 
     // Samples of a comparison, each way. The final decision about a target takes as many as compare().
     static constexpr uint32_t kSearchSamples = 120000, kTrialSamples = 60000;
+    // More dB than the PSNR of kSearchSamples is off.
+    static constexpr double kPsnrOfFewSamples = 0.2;
 };
 
 // A budget of bytes below all that a caller may name. Stands for the smallest file in reach.

@@ -11,12 +11,16 @@ namespace gim {
 
 namespace {
 
-constexpr std::array<uint32_t, 2> kOthers = {180, 60};  // more for limbs and high rates, fewer for what is nearly a box
+constexpr uint32_t kMore = 180, kFewer = 60;  // more for limbs and high rates, fewer for what is nearly a box
+// Bytes for each tile above which more tiles probably take fewer bytes. A tile by itself takes about 4.
+constexpr double kDearTile = 25;
 // Between creases, fewer tiles are enough.
 constexpr std::array<uint32_t, 2> kOthersWithCreases = {80, 55};
 
 // Brief fits may rank images wrongly whose bytes differ by less than this share. Those of creases tell less.
 constexpr double kNoise = 0.05, kNoiseWithCreases = 0.25;
+
+constexpr double kClearGain = 0.02;
 
 class Trials {
   public:
@@ -51,6 +55,36 @@ EncodeOptions usual(const EncodeOptions& given, bool has_creases) {
     return options;
 }
 
+EncodeOptions in_number(EncodeOptions options, uint32_t tiles) {
+    options.tiles = tiles;
+    return options;
+}
+
+// With creases and without, if the surface has any.
+Result<Trials> tried_in_usual_number(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
+    EncodeOptions options = usual(given, has_creases);
+    Trials trials(runs);
+    trials.add(options);
+    if (options.creases) {
+        options.creases = false;
+        trials.add(options);
+    }
+    if (trials.cheapest_first().empty()) return *trials.first_error();
+    return trials;
+}
+
+// Tries the number that is probably better than the usual one. Tries the other one unless the first is clearly better.
+void try_other_numbers(Trials& trials, const TriedTiles& usual) {
+    const double bytes = bytes_at(usual.options.rate, usual.estimate.log_bytes);
+    const bool is_dear = bytes > kDearTile * usual.options.tiles;
+    const uint32_t likely = is_dear ? kMore : kFewer;
+    trials.add(in_number(usual.options, likely));
+    const TriedTiles& best = trials.cheapest_first()[0];
+    if (best.options.tiles == likely && best.estimate.log_bytes < usual.estimate.log_bytes - std::log1p(kClearGain))
+        return;
+    trials.add(in_number(usual.options, is_dear ? kFewer : kMore));
+}
+
 // Without a search: tiles keep creases if that leads to a file.
 Result<Encoded> code_once(const CodingRuns& runs, EncodeOptions options) {
     auto encoded = runs.code(options, {});
@@ -62,21 +96,19 @@ Result<Encoded> code_once(const CodingRuns& runs, EncodeOptions options) {
 
 }  // namespace
 
+Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
+    GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
+    return trials.cheapest_first();
+}
+
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
-    EncodeOptions options = usual(given, has_creases);
-    Trials trials(runs);
-    trials.add(options);
-    if (options.creases) {
-        options.creases = false;
-        trials.add(options);
-    }
-    if (trials.cheapest_first().empty()) return *trials.first_error();
-    if (given.tiles == 0) {
-        options.creases = trials.cheapest_first()[0].options.creases;
-        for (const uint32_t tiles : options.creases ? std::span<const uint32_t>(kOthersWithCreases) : kOthers) {
-            options.tiles = tiles;
-            trials.add(options);
-        }
+    GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
+    if (given.tiles != 0) return trials.cheapest_first();
+    const TriedTiles first = trials.cheapest_first()[0];
+    if (first.options.creases) {
+        for (const uint32_t tiles : kOthersWithCreases) trials.add(in_number(first.options, tiles));
+    } else {
+        try_other_numbers(trials, first);
     }
     return trials.cheapest_first();
 }

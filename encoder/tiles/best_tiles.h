@@ -16,8 +16,12 @@ struct TriedTiles {
     Estimate estimate;
 };
 
-// Estimates what tiles cost: with creases and without, if the surface has any, then in several numbers if the options leave
-// the number open. Returns those whose images could be made, the cheapest first, or the first error. Only for targets that
+// Estimates what tiles cost in the number that the options name, or in the usual one: with creases and without, if the
+// surface has any. Returns those whose images could be made, the cheapest first, or the first error. Only for targets that
+// are searched for.
+Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
+
+// Goes on in other numbers if the options leave the number open. Returns those whose images could be made, the cheapest first, or the first error. Only for targets that
 // are searched for.
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 

@@ -30,6 +30,16 @@ uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
     return exponent;
 }
 
+// Sweeps of a map that only tells where a first sampling leaves error.
+constexpr int kDraftSweeps = 4, kFinalDraftSweeps = 10;
+
+// The map that comes first.
+TileMapOptions first_map(const TileMapOptions& last, bool is_draft) {
+    TileMapOptions options = last;
+    if (is_draft) options.sweeps = kDraftSweeps, options.final_sweeps = kFinalDraftSweeps;
+    return options;
+}
+
 struct MappedBase {
     TileBase tiles;
     TileMap map;
@@ -146,7 +156,7 @@ Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, c
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     TileMapOptions map_options;
     map_options.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    GIM_TRY(found, find_base(surface, options.tiles, map_options, clock));
+    GIM_TRY(found, find_base(surface, options.tiles, first_map(map_options, options.density), clock));
     auto& [tiles, map] = found;
     MadeTiles made;
     made.stretch_efficiency = stretch_efficiency(dense.positions, map);

@@ -47,10 +47,15 @@ double TileMapper::sweep() {
     return total > 0 ? 3 * gain / total : 0;  // every triangle is in up to three stars
 }
 
+// To try the corners takes longer than a sweep of some thousand vertices. Those that stay rest until the sweeps have come
+// to their end.
 void TileMapper::sweep_until(int most, double tolerance) {
+    bool do_corners_rest = false;
     for (int i = 0; i < most; ++i) {
-        const size_t moved = move_corners();
-        if (sweep() < tolerance && moved == 0) break;
+        const size_t moved = do_corners_rest ? 0 : move_corners();
+        const bool is_at_end = sweep() < tolerance;
+        if (is_at_end && moved == 0 && !do_corners_rest) break;
+        do_corners_rest = moved == 0 && !is_at_end;
     }
 }
 

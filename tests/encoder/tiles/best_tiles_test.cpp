@@ -1,0 +1,74 @@
+#include "encoder/tiles/best_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace gim {
+namespace {
+
+// Runs whose files have known costs. Notes which numbers of tiles are tried.
+struct KnownRuns {
+    std::map<uint32_t, double> bytes_of;  // per number of tiles, at the target
+    std::vector<uint32_t> tried;
+
+    CodingRuns runs() {
+        const auto code = [](const EncodeOptions&, const Contest&) -> Result<Encoded> { return Error{}; };
+        const auto estimate = [this](const EncodeOptions& options, std::optional<double>) -> Result<Estimate> {
+            tried.push_back(options.tiles);
+            return Estimate{log_bytes(bytes_of.at(options.tiles), options.rate.value), 1};
+        };
+        return {code, estimate};
+    }
+};
+
+EncodeOptions options_for(double psnr) {
+    EncodeOptions options;
+    options.layout = Layout::kTiles;
+    options.rate = {RateTarget::Kind::kPsnr, psnr};
+    return options;
+}
+
+std::vector<uint32_t> numbers_tried(const std::map<uint32_t, double>& bytes_of) {
+    KnownRuns known{bytes_of, {}};
+    const auto tried = try_tiles(known.runs(), options_for(65), false);
+    EXPECT_TRUE(tried.ok());
+    double last = -HUGE_VAL;
+    for (const TriedTiles& each : tried.value()) {
+        EXPECT_GE(each.estimate.log_bytes, last);
+        last = each.estimate.log_bytes;
+    }
+    return known.tried;
+}
+
+TEST(BestTiles, FewBytesAskForFewerTilesAndManyForMore) {
+    EXPECT_EQ(numbers_tried({{120, 1500}, {60, 1200}, {180, 1800}}), (std::vector<uint32_t>{120, 60}));
+    EXPECT_EQ(numbers_tried({{120, 5000}, {60, 5500}, {180, 4500}}), (std::vector<uint32_t>{120, 180}));
+}
+
+TEST(BestTiles, BothOthersAreTriedUnlessOneIsClearlyBetter) {
+    EXPECT_EQ(numbers_tried({{120, 1500}, {60, 1600}, {180, 1400}}), (std::vector<uint32_t>{120, 60, 180}));
+    EXPECT_EQ(numbers_tried({{120, 1500}, {60, 1495}, {180, 1400}}), (std::vector<uint32_t>{120, 60, 180}));
+    EXPECT_EQ(numbers_tried({{120, 5000}, {60, 4500}, {180, 5100}}), (std::vector<uint32_t>{120, 180, 60}));
+}
+
+TEST(BestTiles, UsualNumberComesAlone) {
+    KnownRuns known{{{120, 1500}, {60, 1200}, {180, 1800}}, {}};
+    const auto tried = try_usual_tiles(known.runs(), options_for(65), false);
+    ASSERT_TRUE(tried.ok());
+    EXPECT_EQ(tried.value().size(), 1u);
+    EXPECT_EQ(known.tried, std::vector<uint32_t>{120});
+}
+
+TEST(BestTiles, NumberThatIsAskedForStays) {
+    KnownRuns known{{{77, 1500}}, {}};
+    EncodeOptions options = options_for(65);
+    options.tiles = 77;
+    ASSERT_TRUE(try_tiles(known.runs(), options, false).ok());
+    EXPECT_EQ(known.tried, std::vector<uint32_t>{77});
+}
+
+}  // namespace
+}  // namespace gim
