@@ -21,8 +21,7 @@ struct TriedTiles {
 // are searched for.
 Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
-// Goes on in other numbers if the options leave the number open. Returns those whose images could be made, the cheapest first, or the first error. Only for targets that
-// are searched for.
+// The same; goes on in other numbers if the options leave the number open.
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
 // If the target is searched for, codes the cheapest of try_tiles(), and those that cost almost the same; one that is sure
