@@ -58,10 +58,6 @@ std::vector<Vec3> TileCodec::decoded(const std::vector<float>& image, const Unit
     return positions_of(coded.samples(coded.decode()), units, frame_);
 }
 
-void TileCodec::repair(TilePyramid<int32_t>& pyramid, const Units& units) {
-    repair(pyramid, units, kLastRepairOfTiles);
-}
-
 void TileCodec::repair(TilePyramid<int32_t>& pyramid, const Units& units, const RepairEffort& effort) {
     TileFoldImage coded(coded_.complex.view(), shape_, texels_, responses_, pyramid, units);
     passes_.repair(coded, effort);

@@ -26,13 +26,12 @@ class TileCodec final : public FitCodec {
     std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override;
     std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) override;
     // Mends the folds that the quantizer leaves in the integers of a file of such an image (fold_passes.h).
-    void repair(TilePyramid<int32_t>& pyramid, const Units& units);
+    void repair(TilePyramid<int32_t>& pyramid, const Units& units, const RepairEffort& effort = kLastRepairOfTiles);
 
   private:
     TileCodec(CodedComplex coded, TileTexels texels, const TileShape& shape, const FitSetting& setting);
 
     TilePyramid<int32_t> quantized(const std::vector<float>& image, const Units& units) const;
-    void repair(TilePyramid<int32_t>& pyramid, const Units& units, const RepairEffort& effort);
 
     CodedComplex coded_;
     TileTexels texels_;
