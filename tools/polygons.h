@@ -50,8 +50,8 @@ Result<void> take_memory(uint64_t vertices, uint64_t corners, ReadContext& conte
 // Keeps every vertex and every face in the file's order. Cuts larger faces into triangles inside their outline. Keeps
 // degenerate and repeated triangles, because the encoder cleans them. Leaves faces out that have fewer than three
 // corners (points and lines), with a warning. Fails without vertices or faces. Otherwise an error names the first face
-// that has a corner that is not a vertex. face_texture indexes the textures of the context; the mesh gets them. Without normals the
-// mesh gets no shading.
+// that has a corner that is not a vertex. face_texture indexes the textures of the context; the mesh gets them. Without
+// normals the mesh gets no shading.
 Result<TriangleMesh> triangulate(PolygonSoup soup, ReadContext& context);
 
 }  // namespace gim

@@ -1,7 +1,8 @@
 // glTF 2 and GLB. Reads every triangle primitive of every mesh instance of the scene, in world coordinates, as the
 // file's own pose shows it: node transforms, instances, default morph weights and skins are applied, animations are
 // not. If colours are wanted, also COLOR_0, base-colour texture with its transform, and base-colour factor. If
-// shading is wanted, also NORMAL; a skin leaves it in its rest pose. Skips points, lines, and vertices that no triangle uses.
+// shading is wanted, also NORMAL; a skin leaves it in its rest pose. Skips points, lines, and vertices that no triangle
+// uses.
 //
 // The JSON is read with nlohmann::json, not with a glTF library. tinygltf 2.7, the one that Debian has, refuses valid
 // files before a caller sees them (accessors without a buffer view, buffers that only a compression fills), reads every

@@ -1,7 +1,8 @@
 // PLY: ascii, binary_little_endian, binary_big_endian, with any property types. Skips unknown elements and properties.
 // Reads the faces' vertex_indices (or vertex_index), or the strips of a tristrips element. If colours are wanted, also
 // red, green, blue of the vertices or else of the faces, and texture coordinates of vertices (u v, s t, texture_u texture_v) or of face
-// corners (texcoord, texnumber) for the images that "comment TextureFile" names. If shading is wanted, also nx, ny, nz of the vertices.
+// corners (texcoord, texnumber) for the images that "comment TextureFile" names. If shading is wanted, also nx, ny, nz of
+// the vertices.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -24,7 +24,8 @@ struct View {
 };
 
 // Draws the mesh so that it fills the picture. Faces seen from behind are reddish, so holes and flipped faces show.
-// Smooth shading uses the mesh's own normals if it has some. Leaves out triangles with a non-finite corner. `lines`: edges of the mesh, in red, paler behind the surface.
+// Smooth shading uses the mesh's own normals if it has some. Leaves out triangles with a non-finite corner. `lines`:
+// edges of the mesh, in red, paler behind the surface.
 Picture render_mesh(const TriangleMesh& mesh, const View& view, std::span<const std::array<uint32_t, 2>> lines = {});
 
 // Draws the mesh grey, with its defects against a reference: folded triangles red, edges folded back dark red, area whose

@@ -6,8 +6,7 @@
 
 namespace gim {
 
-// An Error unless there are triangles, positions are finite, triangles index them, and
-// the normals fit them. O(V + F).
+// An Error unless there are triangles, positions are finite, triangles index them, and the normals fit them. O(V + F).
 Result<void> check_numbers(const TriangleMesh& input);
 
 }  // namespace gim

@@ -20,6 +20,7 @@ constexpr std::array<uint32_t, 2> kOthersWithCreases = {80, 55};
 // Brief fits may rank images wrongly whose bytes differ by less than this share. Those of creases tell less.
 constexpr double kNoise = 0.05, kNoiseWithCreases = 0.25;
 
+// By how much of its bytes a number of tiles must beat the usual one, so that no further number is tried.
 constexpr double kClearGain = 0.02;
 
 class Trials {
