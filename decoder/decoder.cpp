@@ -5,30 +5,8 @@
 #include "decoder/layout/level_reader.h"
 #include "decoder/layouts.h"
 #include "decoder/reopen.h"
+#include "decoder/with_image.h"
 #include "gim/decoder.h"
-
-namespace gim {
-
-namespace {
-
-gim_status code(Status status) { return static_cast<gim_status>(status); }
-
-std::span<const uint8_t> span_of(const void* bytes, size_t size) { return {static_cast<const uint8_t*>(bytes), size}; }
-
-// Calls f(reader, request) for an image of a file, with the functions of the file's layout.
-template <class F>
-gim_status with_image(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
-                      const F& f) {
-    Header header;
-    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return code(s);
-    if (image >= header.image_count()) return code(Status::kBadArgument);
-    const ContainerLimits limits = limits_of(&info->limits);
-    const LevelRequest request = {header, span_of(bytes, size), limits, image, level};
-    return code(f(reader_of(header.layout), request));
-}
-
-}  // namespace
-}  // namespace gim
 
 using namespace gim;
 

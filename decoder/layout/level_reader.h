@@ -7,6 +7,7 @@
 #include <span>
 
 #include "decoder/layout/plane_level.h"
+#include "decoder/refine/quad_domain.h"
 #include "format/container.h"
 #include "gim/decoder.h"
 
@@ -55,6 +56,12 @@ struct LevelReader {
     Status (*grid)(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
     // class_of, path_count: as in gim_read_seams.
     Status (*seams)(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
+
+    // The tiles of a level, to be refined (gim/refine.h). Null if the layout has none.
+    // scratch_size: of read_glue.
+    Status (*domain_shape)(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size);
+    // Fills all arrays of the glue but is_anti. shape: of domain_shape. scratch is large enough.
+    Status (*read_glue)(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue);
 
     // Opens a level of the plane that `chunk` at `offset` holds. request.level: of the plane.
     Status (*open_plane)(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);

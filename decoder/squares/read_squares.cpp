@@ -66,6 +66,27 @@ void set_texcoords(uint32_t side, GridPoint p, uint32_t count, float* texcoords)
     }
 }
 
+// The classes on the ring of a level and of the coarsest one, and what find_mates() needs.
+struct GlueWork {
+    uint32_t *class_of, *coarse_class_of, *mates;
+    Quad* quads;
+    size_t mates_size;
+};
+GlueWork lay_out_glue_work(uint32_t side, uint32_t coarse_side, Arena* arena) {
+    const size_t cells = size_t{coarse_side - 1} * (coarse_side - 1);
+    GlueWork work{};
+    work.mates_size = 4 * cells + size_t{coarse_side} * coarse_side + 1;
+    work.class_of = arena->take<uint32_t>(ring_length(side));
+    work.coarse_class_of = arena->take<uint32_t>(ring_length(coarse_side));
+    work.mates = arena->take<uint32_t>(work.mates_size);
+    work.quads = arena->take<Quad>(cells);
+    return work;
+}
+
+// Corner i of a cell, then the direction to the next one.
+constexpr GridPoint kCorner[4] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+constexpr int32_t kAlong[4][2] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}};
+
 }  // namespace
 
 Status square_level_info(const LevelRequest& request, gim_level_info* info) {
@@ -132,6 +153,52 @@ Status read_square_seams(const LevelRequest& request, uint32_t* class_of, uint32
     if (class_of) ring_classes(l.seams, l.side, {class_of, ring_length(l.side)});
     if (path_count) *path_count = l.seams.path_count;
     return Status::kOk;
+}
+
+Status square_domain_shape(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size) {
+    Level l;
+    if (Status s = open_level(request, UINT32_MAX, &l); s != Status::kOk) return s;
+    const uint32_t intervals = 1u << (l.coarsest - request.level), cells = (l.side - 1) / intervals;
+    *shape = {cells * cells, intervals, l.class_count + (l.side - 2) * (l.side - 2)};
+    Arena arena(nullptr);
+    (void)lay_out_glue_work(l.side, cells + 1, &arena);
+    *scratch_size = arena.used();
+    return Status::kOk;
+}
+
+Status read_square_glue(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue) {
+    Level l;
+    if (Status s = open_level(request, request.level, &l); s != Status::kOk) return s;
+    const uint32_t n = shape.intervals, cells = (l.side - 1) / n;
+    Arena arena(scratch);
+    const GlueWork work = lay_out_glue_work(l.side, cells + 1, &arena);
+    ring_classes(l.seams, l.side, {work.class_of, ring_length(l.side)});
+    ring_classes(l.seams, cells + 1, {work.coarse_class_of, ring_length(cells + 1)});
+    const uint32_t coarse_classes = ring_class_count(l.seams, cells + 1);
+    const VertexNumbers fine{l.side, work.class_of, l.class_count};
+    const VertexNumbers coarse{cells + 1, work.coarse_class_of, coarse_classes};
+    for (uint32_t t = 0; t < shape.tiles; ++t) {
+        const uint32_t row = t / cells, column = t % cells;
+        for (uint32_t i = 0; i < 4; ++i) {
+            const uint32_t r = row + kCorner[i].row, c = column + kCorner[i].column, h = 4 * t + i;
+            const auto number = [&](uint32_t k) {
+                return fine.at(r * n + k * static_cast<uint32_t>(kAlong[i][0]),
+                               c * n + k * static_cast<uint32_t>(kAlong[i][1]));
+            };
+            work.quads[t][i] = coarse.at(r, c);
+            glue->corner[h] = number(0);
+            glue->along[h] = n > 1 ? number(1) : 0;
+            glue->step[h] = n > 2 ? static_cast<int32_t>(number(2) - number(1)) : 0;
+            for (uint32_t k = 3; k < n; ++k) {
+                if (number(k) != number(1) + (k - 1) * static_cast<uint32_t>(glue->step[h])) return Status::kMalformed;
+            }
+        }
+        glue->inner[t] = n > 1 ? fine.at(row * n + 1, column * n + 1) : 0;
+    }
+    glue->row_step = l.side - 2;
+    const QuadFault fault = find_mates({work.quads, shape.tiles}, coarse_classes + (cells - 1) * (cells - 1),
+                                       {work.mates, work.mates_size}, glue->mate);
+    return fault.kind == QuadFault::Kind::kFine ? Status::kOk : Status::kMalformed;
 }
 
 Status open_square_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {

@@ -216,6 +216,34 @@ Status read_tile_seams(const LevelRequest& request, uint32_t* class_of, uint32_t
     return Status::kOk;
 }
 
+Status tile_domain_shape(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size) {
+    gim_level_info info;
+    if (Status s = tile_level_info(request, &info); s != Status::kOk) return s;
+    const TileShape& tiles = request.header.tiles;
+    *shape = {tiles.tiles, tiles.intervals(request.level), info.vertex_count};
+    Arena arena(nullptr);
+    (void)lay_out_complex(tiles, &arena);
+    *scratch_size = arena.used();
+    return Status::kOk;
+}
+
+Status read_tile_glue(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue) {
+    Arena arena(scratch);
+    TileWorkspace ws = lay_out_complex(request.header.tiles, &arena);
+    if (Status s = read_complex(request.header, request.file, ws); s != Status::kOk) return s;
+    const QuadComplex& complex = ws.complex;
+    const TileSamples samples(complex, shape.intervals);
+    for (uint32_t h = 0; h < complex.half_edges(); ++h) {
+        glue->mate[h] = complex.mate[h];
+        glue->corner[h] = complex.vertex[h];
+        glue->along[h] = shape.intervals > 1 ? samples.along(h, 1) : 0;
+        glue->step[h] = complex.lower[complex.edge[h]] == h ? 1 : -1;
+    }
+    for (uint32_t t = 0; t < complex.tiles; ++t) glue->inner[t] = samples.inner(t);
+    glue->row_step = shape.intervals - 1;
+    return Status::kOk;
+}
+
 Status open_tile_plane(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane) {
     if (Status s = read_plane_chunk(request, chunk, offset, plane); s != Status::kOk) return s;
     plane->coarsest = texels_of(request, *plane);

@@ -136,16 +136,21 @@ Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t
 
 }  // namespace
 
-TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena) {
+TileWorkspace lay_out_complex(const TileShape& shape, Arena* arena) {
     const size_t half_edges = size_t{4} * shape.tiles;
-    const uint32_t h = shape.intervals(level) / 2;
-    const TilePlanes planes(h), before(h / 2);  // `before` is empty where h is 1
     TileWorkspace ws;
     QuadComplex& c = ws.complex;
     for (uint32_t** array : {&c.mate, &c.vertex, &c.edge, &c.lower, &c.valence, &ws.quad_code.next,
                              &ws.quad_code.previous, &ws.quad_code.fan})
         *array = arena->take<uint32_t>(half_edges);
     c.on_boundary = arena->take<uint8_t>(half_edges);
+    return ws;
+}
+
+TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena) {
+    const uint32_t h = shape.intervals(level) / 2;
+    const TilePlanes planes(h), before(h / 2);  // `before` is empty where h is 1
+    TileWorkspace ws = lay_out_complex(shape, arena);
     ws.models = arena->take<BandModels>(1);
     ws.band_work = BandWork(arena->take<uint32_t>(BandWork::size(2 * h + 1)), 2 * h + 1);
     ws.flags = arena->take<TileFlags>(shape.tiles);

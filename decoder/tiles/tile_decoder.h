@@ -27,6 +27,8 @@ struct TileWorkspace {
     void* samples[2] = {};       // int32_t or float, in turn; the level asked for ends in the first
 };
 
+// What read_complex needs alone.
+TileWorkspace lay_out_complex(const TileShape& shape, Arena* arena);
 TileWorkspace lay_out_tiles(const TileShape& shape, uint32_t level, Arena* arena);
 
 // Reads and checks how the tiles are glued, and which edges are sharp. Fills ws.complex and ws.is_sharp. Of ws.quad_code,

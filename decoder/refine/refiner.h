@@ -1,0 +1,76 @@
+// Brings a refined mesh to what a rule wants: splits where vertices are needed, welds where they are not.
+// After ROAM (Duchaineau et al. 1997): with a budget of triangles, the most needed split goes on until it would cost a
+// vertex that is needed more. Errors that include all later ones make needs fall from split to split, so that hardly any
+// split forces another one: Lindstrom, Pascucci. Terrain simplification simplified. 2002.
+#pragma once
+
+#include <cstdint>
+
+#include "decoder/pyramid/arena.h"
+#include "decoder/refine/refined_mesh.h"
+#include "gim/refine.h"
+
+namespace gim {
+
+// How much vertices are needed (gim_rule). 0 is not at all.
+class Needs {
+  public:
+    Needs(const gim_rule& rule, const QuadDomain& domain);
+
+    float of(uint32_t vertex) const;
+    float keep() const { return keep_; }
+
+  private:
+    bool is_outside(const SampleValue& value) const;
+
+    const gim_rule& rule_;
+    const QuadDomain& domain_;
+    float keep_, pixels_, per_unit_;
+    bool has_box_;
+};
+
+// Numbers of triangles or vertices, the one of the highest priority first. Its memory is the caller's.
+class NeedQueue {
+  public:
+    struct Entry {
+        float priority;
+        uint32_t number;
+    };
+    NeedQueue() = default;
+    NeedQueue(Entry* entries, uint32_t room) : entries_(entries), room_(room) {}
+
+    void clear() { count_ = 0; }
+    bool is_full() const { return count_ == room_; }
+    bool is_empty() const { return count_ == 0; }
+    const Entry& first() const { return entries_[0]; }
+    void push(Entry entry);
+    void pop();
+
+  private:
+    Entry* entries_ = nullptr;
+    uint32_t room_ = 0, count_ = 0;
+};
+
+class Refiner {
+  public:
+    // Takes room for queues from the arena.
+    Refiner(RefinedMesh* mesh, Arena* arena);
+
+    // Returns whether nothing is left to do.
+    bool run(const gim_rule& rule, uint32_t most_operations);
+
+  private:
+    bool sweep(const Needs& needs, uint32_t most_triangles, uint32_t* operations);
+    bool run_within(const Needs& needs, uint32_t most_triangles, uint32_t* operations);
+    void fill_queues(const Needs& needs);
+    void skip_stale(const Needs& needs);
+    void queue_split(const Needs& needs, uint32_t triangle);
+    void queue_weld(const Needs& needs, uint32_t vertex);
+    void split_and_queue(const Needs& needs, uint32_t triangle);
+    void weld_and_queue(const Needs& needs, uint32_t vertex);
+
+    RefinedMesh* mesh_;
+    NeedQueue splits_, welds_;
+};
+
+}  // namespace gim
