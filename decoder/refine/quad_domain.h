@@ -35,6 +35,8 @@ struct TileGlue {
     // Per tile: the inner sample of row 1 and column 1. Columns follow each other.
     uint32_t* inner = nullptr;
     uint32_t row_step = 0;  // from an inner sample to the one in the next row
+    // Where tiles lie in the image: `columns` of them in a row, each `slot` samples from the one before.
+    uint32_t columns = 1, slot = 0;
     // Per tile: 1 if the base is split from corner 1 to corner 3, 0 if from corner 0 to corner 2.
     uint8_t* is_anti = nullptr;
 };

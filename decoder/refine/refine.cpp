@@ -7,6 +7,7 @@
 #include <span>
 
 #include "decoder/layout/level_reader.h"
+#include "decoder/refine/patches.h"
 #include "decoder/refine/quad_domain.h"
 #include "decoder/refine/refined_mesh.h"
 #include "decoder/refine/refiner.h"
@@ -171,4 +172,16 @@ gim_status gim_refine(gim_refined* mesh, const gim_rule* rule, uint32_t most_ope
     const bool is_done = mesh->refiner.run(*rule, most_operations);
     if (done) *done = is_done ? 1 : 0;
     return GIM_OK;
+}
+
+gim_status gim_read_patches(const gim_refined* mesh, gim_patch* patches, uint32_t capacity, uint32_t* count) {
+    if (!mesh || !count || (!patches && capacity > 0)) return GIM_BAD_ARGUMENT;
+    const QuadDomain& domain = mesh->mesh.domain();
+    const TileGlue& glue = domain.glue();
+    const uint64_t rows = (domain.shape().tiles + glue.columns - 1) / glue.columns;
+    if (glue.columns * uint64_t{glue.slot} > UINT16_MAX || rows * glue.slot > UINT16_MAX) return GIM_LIMIT_EXCEEDED;
+    PatchList list(patches, capacity);
+    list_patches(mesh->mesh, &list);
+    *count = list.count();
+    return list.count() > capacity ? GIM_SCRATCH_TOO_SMALL : GIM_OK;
 }

@@ -196,6 +196,8 @@ Status read_square_glue(const LevelRequest& request, const DomainShape& shape, v
         glue->inner[t] = n > 1 ? fine.at(row * n + 1, column * n + 1) : 0;
     }
     glue->row_step = l.side - 2;
+    glue->slot = n;
+    glue->columns = cells;
     const QuadFault fault = find_mates({work.quads, shape.tiles}, coarse_classes + (cells - 1) * (cells - 1),
                                        {work.mates, work.mates_size}, glue->mate);
     return fault.kind == QuadFault::Kind::kFine ? Status::kOk : Status::kMalformed;

@@ -241,6 +241,8 @@ Status read_tile_glue(const LevelRequest& request, const DomainShape& shape, voi
     }
     for (uint32_t t = 0; t < complex.tiles; ++t) glue->inner[t] = samples.inner(t);
     glue->row_step = shape.intervals - 1;
+    glue->slot = shape.intervals + 1;
+    glue->columns = TileAtlas(shape.tiles, shape.intervals).width() / glue->slot;
     return Status::kOk;
 }
 

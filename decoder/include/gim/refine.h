@@ -139,6 +139,28 @@ typedef struct gim_rule {
  * Cost: O(triangles), a few nanoseconds each, and O(1) for each operation. */
 GIM_API gim_status gim_refine(gim_refined* mesh, const gim_rule* rule, uint32_t most_operations, uint32_t* done);
 
+/* ---- patches, for a GPU ----
+ * The mesh as squares of the image, for tessellation or for a compute shader: 8 bytes for many triangles. A patch is a
+ * square of a tile whose inside is as fine everywhere, and whose borders are as fine all along. Samples are those of
+ * gim_decode_positions at the level of the domain, in one texture. Neighbours put the same vertices on a border that they
+ * share, so there are no cracks, however each of them draws its inside.
+ * As (u, v, s, c) of Maximo et al. 2013, section 4.4. */
+typedef struct gim_patch {
+    uint16_t column, row; /* of its first sample, the one of the lowest column and row */
+    uint8_t side;         /* 2^side intervals along each side of the patch */
+    uint8_t inside;       /* 2^inside cells along each side, at most 2^side; 0: one cell, two triangles */
+    uint8_t finer; /* borders with twice as many edges as cells: 1 first row, 2 last column, 4 last row, 8 first column;
+                             the others have as many */
+    uint8_t zero;
+} gim_patch;
+
+/* Writes the patches of the current mesh: at least as fine as its triangles, at most one split finer.
+ * capacity  of patches; 2 for each triangle of the mesh are always enough
+ * count     receives how many there are, also with GIM_SCRATCH_TOO_SMALL
+ * patches   may be NULL if capacity is 0
+ * GIM_LIMIT_EXCEEDED if the image has more than 65536 rows or columns. Cost: O(triangles). */
+GIM_API gim_status gim_read_patches(const gim_refined* mesh, gim_patch* patches, uint32_t capacity, uint32_t* count);
+
 #ifdef __cplusplus
 }
 #endif
