@@ -17,3 +17,11 @@ function(gim_target target)
         target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Werror>)
     endif()
 endfunction()
+
+# Compiles these headers once for all files of the target. Each file still includes what it needs;
+# -DGIM_PRECOMPILE_HEADERS=OFF tells if one does not.
+function(gim_precompile target)
+    if(GIM_PRECOMPILE_HEADERS)
+        target_precompile_headers(${target} PRIVATE ${ARGN})
+    endif()
+endfunction()

@@ -51,6 +51,7 @@ configure_and_build() {
     shift
     local launcher=()
     command -v ccache >/dev/null && launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    export CCACHE_SLOPPINESS=pch_defines,time_macros # else ccache keeps nothing that uses a precompiled header
     say "Building the preset '$preset'"
     (cd "$GIM_ROOT" && cmake --preset "$preset" --log-level=WARNING "${launcher[@]}" "$@" &&
         cmake --build --preset "$preset") || die "building the preset '$preset' failed"
