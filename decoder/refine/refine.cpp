@@ -91,9 +91,9 @@ gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size,
     if (!positions || !domain || !is_aligned(memory)) return GIM_BAD_ARGUMENT;
     return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         DomainShape shape;
-        uint64_t needed = 0;
-        if (Status s = read_shape(reader, request, &shape, &needed); s != Status::kOk) return s;
-        if (Status s = check_scratch({scratch, scratch_size}, needed); s != Status::kOk) return s;
+        uint64_t of_scratch = 0;
+        if (Status s = read_shape(reader, request, &shape, &of_scratch); s != Status::kOk) return s;
+        if (Status s = check_scratch({scratch, scratch_size}, of_scratch); s != Status::kOk) return s;
         if (memory_size < domain_size(shape)) return Status::kScratchTooSmall;
         Arena arena(memory);
         DomainMemory parts(shape, &arena);

@@ -79,6 +79,13 @@ TEST(RefinedMesh, PlacesInTilesAreThoseOfTheDecodedSamples) {
     }
 }
 
+// The sanitizers take ten times as long.
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kOperations = 5000;
+#else
+constexpr int kOperations = 100000;
+#endif
+
 TEST(RefinedMesh, RandomSplitsAndWeldsKeepEveryMeshSound) {
     Random random(1);
     for (const char* name : kRefinables) {
@@ -88,7 +95,7 @@ TEST(RefinedMesh, RandomSplitsAndWeldsKeepEveryMeshSound) {
         const std::multiset<Face> base_faces = r.faces();
         Follower follower;
         (void)follower.follow(r);
-        for (int i = 0; i < 100000; ++i) {
+        for (int i = 0; i < kOperations; ++i) {
             // From mostly splits to mostly welds and back.
             const bool splits = between(random, 0, 1) < 0.5 + 0.45 * std::sin(i * 1e-3);
             const uint32_t f = number_between(random, 0, r.count() - 1);
