@@ -8,10 +8,10 @@ Layout choose_layout(const Mesh& mesh, const EncodeOptions& options, StageClock&
     Layout best = all_layouts().front().layout;
     double most = 0;
     for (const LayoutEntry& entry : all_layouts()) {
-        const double efficiency = entry.efficiency(mesh, options, clock);
-        if (efficiency <= most) continue;
+        const double samples = entry.effective_samples(mesh, options, clock);
+        if (samples <= most) continue;
         best = entry.layout;
-        most = efficiency;
+        most = samples;
     }
     return best;
 }

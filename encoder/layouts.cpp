@@ -41,18 +41,26 @@ Made tiles_of(const MakeImages& in) {
     return tiles_layout(std::move(tiles), in.mesh, in.options);
 }
 
-double efficiency_of_squares(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
+EncodeOptions unfitted(const EncodeOptions& asked) {
     EncodeOptions options = asked;
     options.fit = FitStrength::kOff;
     options.density = false;
+    return options;
+}
+
+double effective_samples_of_squares(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
+    EncodeOptions options = unfitted(asked);
     options.rate = {};
     EncodeReport report;
     CutPreferences preferences;
     const auto squares = make_squares(mesh, options, options.side, clock, {}, report, preferences);
-    return squares.ok() ? report.stretch_efficiency : 0;
+    if (!squares.ok()) return 0;
+    double samples = 0;
+    for (const SquareImage& image : squares.value().images) samples += double(image.positions.size());
+    return report.stretch_efficiency * samples;
 }
 
-double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
+double effective_samples_of_charts(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
     MultiChartOptions quick;
     quick.charts = options.charts;
     quick.samples = options.samples;
@@ -60,25 +68,22 @@ double efficiency_of_charts(const Mesh& mesh, const EncodeOptions& options, Stag
     quick.threads = options.threads;
     quick.fit = std::nullopt;
     const auto charts = make_multi_chart_image(mesh, quick, clock);
-    return charts.ok() ? charts.value().stretch_efficiency * charts.value().packing_efficiency : 0;
+    if (!charts.ok()) return 0;
+    return charts.value().stretch_efficiency * charts.value().packing_efficiency * options.samples;
 }
 
-double efficiency_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
-    EncodeOptions options = asked;
-    options.fit = FitStrength::kOff;
-    options.density = false;
-    if (options.tiles == 0) options.tiles = kUsualTiles;
+double effective_samples_of_tiles(const Mesh& mesh, const EncodeOptions& asked, StageClock& clock) {
+    EncodeOptions options = unfitted(asked);
+    if (options.tiles == 0) options.tiles = tiles_that_fill(options.samples);
     const AuthoredEdges nothing;
     const auto tiles = make_tiles(TileableSurfaces(mesh, nothing).of(options.creases), mesh, options, clock);
-    if (!tiles.ok()) return 0;
-    const MadeTiles& made = tiles.value();
-    return made.stretch_efficiency * double(made.tiles.positions.size()) / double(made.atlas.positions.size());
+    return tiles.ok() ? tiles.value().stretch_efficiency * double(tiles.value().tiles.positions.size()) : 0;
 }
 
 constexpr std::array<LayoutEntry, 3> kLayouts = {{
-    {Layout::kGim, squares_of, efficiency_of_squares, true},
-    {Layout::kMcgim, charts_of, efficiency_of_charts, false},
-    {Layout::kTiles, tiles_of, efficiency_of_tiles, true},
+    {Layout::kGim, squares_of, effective_samples_of_squares, true},
+    {Layout::kMcgim, charts_of, effective_samples_of_charts, false},
+    {Layout::kTiles, tiles_of, effective_samples_of_tiles, true},
 }};
 
 }  // namespace

@@ -20,7 +20,7 @@ struct MakeImages {
     StageClock& clock;
     const Observer& observer;
     EncodeReport& report;        // gets the figures of the stages
-    CutPreferences& cuts;        // squares: empty, or the choice of an earlier call
+    CutPreferences& cuts;        // squares: empty, usual_cuts(), or the choice of an earlier call
     TileableSurfaces& tileable;  // tiles: with what earlier calls made
     bool may_grow = true;        // takes more samples than the options say rather than fail
 };
@@ -29,8 +29,8 @@ struct LayoutEntry {
     Layout layout;
     // Runs all stages from the clean mesh to images that are ready to be coded.
     Result<std::unique_ptr<LayoutImages>> (*make)(const MakeImages&);
-    // Returns effective samples per sample; 0 if the layout cannot take the mesh.
-    double (*efficiency)(const Mesh&, const EncodeOptions&, StageClock&);
+    // Returns the effective samples of a lossless file (choose_layout.h); 0 if the layout cannot take the mesh.
+    double (*effective_samples)(const Mesh&, const EncodeOptions&, StageClock&);
     bool races = false;  // lossy files: worth a trial
 };
 

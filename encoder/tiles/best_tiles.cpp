@@ -7,6 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "format/quad_complex.h"
+#include "format/tile_atlas.h"
+
 namespace gim {
 
 namespace {
@@ -52,7 +55,8 @@ class Trials {
 EncodeOptions usual(const EncodeOptions& given, bool has_creases) {
     EncodeOptions options = given;
     options.creases = given.creases && has_creases;
-    if (options.tiles == 0) options.tiles = kUsualTiles;
+    const bool lossless = given.rate.kind == RateTarget::Kind::kLossless;
+    if (options.tiles == 0) options.tiles = lossless ? tiles_that_fill(options.samples) : kUsualTiles;
     return options;
 }
 
@@ -96,6 +100,20 @@ Result<Encoded> code_once(const CodingRuns& runs, EncodeOptions options) {
 }
 
 }  // namespace
+
+uint32_t tiles_that_fill(uint64_t samples) {
+    uint32_t best = kUsualTiles;
+    double least = HUGE_VAL;
+    for (uint32_t exponent = 1; exponent <= kMostTileExponent; ++exponent) {
+        const uint32_t intervals = 1u << exponent;
+        const uint64_t most = samples / (uint64_t{intervals + 1} * (intervals + 1));
+        auto tiles = static_cast<uint32_t>(std::min<uint64_t>(most, kMostTiles));
+        while (tiles > 0 && TileAtlas(tiles, intervals).samples() > samples) --tiles;
+        const double away = tiles > 0 ? std::abs(std::log(double(tiles) / kUsualTiles)) : HUGE_VAL;
+        if (away < least) best = tiles, least = away;
+    }
+    return best;
+}
 
 Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
     GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));

@@ -11,6 +11,10 @@ namespace gim {
 
 inline constexpr uint32_t kUsualTiles = 120;
 
+// Returns a number of tiles whose atlas has hardly fewer samples than these: of those for each size of tile, the one
+// nearest to the usual number.
+uint32_t tiles_that_fill(uint64_t samples);
+
 struct TriedTiles {
     EncodeOptions options;
     Estimate estimate;
@@ -25,7 +29,8 @@ Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const En
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
 // If the target is searched for, codes the cheapest of try_tiles(), and those that cost almost the same; one that is sure
-// to lose ends early (contest.h). Else tiles keep creases if that leads to a file. Returns the best file.
+// to lose ends early (contest.h). Else tiles keep creases if that leads to a file; without loss, they fill
+// options.samples. Returns the best file.
 Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
 }  // namespace gim

@@ -40,6 +40,22 @@ TileMapOptions first_map(const TileMapOptions& last, bool is_draft) {
     return options;
 }
 
+// A base of about so many tiles. If it has so many more that they must be coarser to stay within the samples, a base of a
+// few less.
+TileBase base_within(const TileableSurface& surface, size_t tiles, uint64_t samples) {
+    const auto base_of = [&](size_t wanted) {
+        return make_tile_base(surface.input, surface.hierarchy, static_cast<uint32_t>(2 * wanted));
+    };
+    const uint32_t least = exponent_within(static_cast<uint32_t>(tiles), samples);
+    const auto stays_within = [&](const TileBase& base) {
+        return exponent_within(static_cast<uint32_t>(base.pairing.quads.size()), samples) >= least;
+    };
+    TileBase base = base_of(tiles);
+    const size_t fewest = tiles - tiles / 4, step = tiles / 24 + 1;
+    for (size_t fewer = tiles; !stays_within(base) && fewer >= fewest + step;) base = base_of(fewer -= step);
+    return stays_within(base) ? std::move(base) : base_of(tiles);
+}
+
 struct MappedBase {
     TileBase tiles;
     TileMap map;
@@ -52,14 +68,14 @@ constexpr size_t kLeftOutOf = 1000;
 constexpr int kMostMaps = 8;
 
 // Makes a base of about so many tiles, or a larger one if that does not pair or leaves too many vertices out.
-Result<MappedBase> find_base(const TileableSurface& surface, uint32_t tiles, const TileMapOptions& options,
-                             StageClock& clock) {
+Result<MappedBase> find_base(const TileableSurface& surface, uint32_t tiles, uint64_t samples,
+                             const TileMapOptions& options, StageClock& clock) {
     const Mesh& dense = surface.input.mesh;
     std::optional<MappedBase> best;
     int maps = 0;
     for (size_t wanted = tiles; maps < kMostMaps; wanted += wanted / 4 + 1) {
         clock.begin(Stage::kCut);
-        TileBase base = make_tile_base(surface.input, surface.hierarchy, static_cast<uint32_t>(2 * wanted));
+        TileBase base = base_within(surface, wanted, samples);
         const bool finest = base.base.triangles.size() == dense.triangles.size();
         wanted = std::max(wanted, base.base.triangles.size() / 2);
         if (base.pairing.unpaired.empty()) {
@@ -156,7 +172,7 @@ Result<MadeTiles> make_tiles(const TileableSurface& surface, const Mesh& mesh, c
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     TileMapOptions map_options;
     map_options.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    GIM_TRY(found, find_base(surface, options.tiles, first_map(map_options, options.density), clock));
+    GIM_TRY(found, find_base(surface, options.tiles, options.samples, first_map(map_options, options.density), clock));
     auto& [tiles, map] = found;
     MadeTiles made;
     made.stretch_efficiency = stretch_efficiency(dense.positions, map);

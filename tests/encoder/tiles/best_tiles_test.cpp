@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "format/tile_atlas.h"
+
 namespace gim {
 namespace {
 
@@ -68,6 +70,20 @@ TEST(BestTiles, NumberThatIsAskedForStays) {
     options.tiles = 77;
     ASSERT_TRUE(try_tiles(known.runs(), options, false).ok());
     EXPECT_EQ(known.tried, std::vector<uint32_t>{77});
+}
+
+TEST(BestTiles, AtlasesWithoutLossFillTheSamples) {
+    for (const uint64_t samples : {1000u, 5000u, 20000u, 65536u, 1000000u, 16785409u}) {
+        const uint32_t tiles = tiles_that_fill(samples);
+        uint64_t most = 0;
+        for (uint32_t exponent = 1; exponent <= kMostTileExponent; ++exponent) {
+            const uint64_t now = TileAtlas(tiles, 1u << exponent).samples();
+            if (now <= samples) most = now;
+        }
+        EXPECT_GT(double(most), 0.9 * double(samples)) << samples;
+        EXPECT_GE(tiles, kUsualTiles / 3) << samples;
+        EXPECT_LE(tiles, kUsualTiles * 3) << samples;
+    }
 }
 
 }  // namespace

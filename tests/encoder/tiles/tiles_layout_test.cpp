@@ -39,6 +39,20 @@ TEST(TilesLayout, EverySurfaceComesBackWithItsTopologyAtEveryLevel) {
     }
 }
 
+TEST(TilesLayout, WithoutLossTilesFillTheSamples) {
+    for (const TriangleMesh& mesh : {corpus::torus(60, 30, 0.7, 0.3), corpus::limbed_blob(24)}) {
+        EncodeOptions options = tiles(0, kLossless);
+        options.fit = FitStrength::kOff;
+        options.density = false;
+        const auto encoded = encode(mesh, options);
+        ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+        const EncodeReport& report = encoded.value().report;
+        const uint64_t atlas = uint64_t{report.width} * report.height;
+        EXPECT_LE(atlas, 20000);
+        EXPECT_GT(atlas, 0.85 * 20000);
+    }
+}
+
 TEST(TilesLayout, AFitToTheQuantizerMeetsItsTarget) {
     const TriangleMesh mesh = corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 1);
     const auto encoded = encode(mesh, tiles(40, {RateTarget::Kind::kPsnr, 58}));
