@@ -35,8 +35,8 @@ class LayoutRuns {
 
     Layout layout() const { return layout_.layout; }
 
-    // Makes the images of the variant that comes first, and fits them briefly. Returns what it costs. Only for targets that
-    // are searched for. The images wait for estimate() and best().
+    // Makes the images of the variant that comes first, and fits them briefly. Returns what it costs. Squares are cut the
+    // usual way, without a choice. Only for targets that are searched for. Images of tiles wait for estimate() and best().
     Result<Estimate> first_estimate();
 
     // Makes the images of the variants and fits them briefly. Returns what the best one costs. Only for targets that are
@@ -58,6 +58,8 @@ class LayoutRuns {
     CodingRuns runs(const Contest& contest);
     Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);
     Result<Started*> start(const EncodeOptions& now);
+    Result<std::unique_ptr<FileRun>> make(const EncodeOptions& now, const Observer& observer, CutPreferences& cuts);
+    Result<Estimate> estimate_without_choice(const EncodeOptions& now);
     Result<Estimate> estimate_of(const EncodeOptions& now, std::optional<double> near);
 
     const LayoutEntry& layout_;

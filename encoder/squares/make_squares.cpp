@@ -33,6 +33,10 @@ void add_to_report(const MadeSquare& square, double part_of_area, EncodeReport& 
 
 }  // namespace
 
+CutPreferences usual_cuts(const Mesh& mesh) {
+    return CutPreferences(connected_components(mesh.triangles, mesh.positions.size()).count, CutPreference{});
+}
+
 Result<Squares> make_squares(const Mesh& mesh, const EncodeOptions& options, uint32_t most_side, StageClock& clock,
                              const Observer& observer, EncodeReport& report, CutPreferences& preferences) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());

@@ -22,6 +22,9 @@ struct Squares {
 // One preference per component; nothing if it is not chosen yet.
 using CutPreferences = std::vector<std::optional<CutPreference>>;
 
+// The preferences of a mesh that is cut without a choice.
+CutPreferences usual_cuts(const Mesh& mesh);
+
 // Makes the images in the order of the components' first faces. Smaller components get smaller images. Adds its figures
 // to the report. A component whose cut does not fit its side gets the next that holds it, up to `most_side`; a side
 // above options.side becomes a warning. If the file must meet a PSNR or a size, the cuts of the largest components may be
