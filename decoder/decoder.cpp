@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "decoder/layout/level_reader.h"
-#include "decoder/layouts.h"
 #include "decoder/reopen.h"
 #include "decoder/with_image.h"
 #include "gim/decoder.h"

@@ -2,9 +2,8 @@
 #include <algorithm>
 
 #include "decoder/layout/level_reader.h"
-#include "decoder/layouts.h"
 #include "decoder/pyramid/vector3.h"
-#include "decoder/reopen.h"
+#include "decoder/with_image.h"
 #include "format/plane_code.h"
 #include "gim/decoder.h"
 
@@ -17,19 +16,15 @@ static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1);
 template <class F>
 gim_status with_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
                       uint32_t level, const F& f) {
-    const auto code = [](Status status) { return static_cast<gim_status>(status); };
-    Header header;
-    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return code(s);
-    if (image >= header.image_count() || kind >= kPlaneKinds) return code(Status::kBadArgument);
-    Chunk chunk;
-    uint64_t offset = 0;
-    if (!find_chunk(header, plane_type(kind), &chunk, &offset)) return code(Status::kNoSuchPlane);
-    const ContainerLimits limits = limits_of(&info->limits);
-    const LevelRequest request = {header, {static_cast<const uint8_t*>(bytes), size}, limits, image, level};
-    const LevelReader& reader = reader_of(header.layout);
-    PlaneLevel plane;
-    if (Status s = reader.open_plane(request, chunk, offset, &plane); s != Status::kOk) return code(s);
-    return code(f(reader, request, plane));
+    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+        if (kind >= kPlaneKinds) return Status::kBadArgument;
+        Chunk chunk;
+        uint64_t offset = 0;
+        if (!find_chunk(request.header, plane_type(kind), &chunk, &offset)) return Status::kNoSuchPlane;
+        PlaneLevel plane;
+        if (Status s = reader.open_plane(request, chunk, offset, &plane); s != Status::kOk) return s;
+        return f(reader, request, plane);
+    });
 }
 
 void finish_color(float* c) {

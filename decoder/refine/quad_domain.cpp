@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "decoder/pyramid/vector3.h"
+
 namespace gim {
 namespace {
 
@@ -36,10 +38,7 @@ class EdgeSet {
     uint64_t mask_;
 };
 
-float distance(const float* a, const float* b) {
-    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return std::sqrt(x * x + y * y + z * z);
-}
+float distance(const float* a, const float* b) { return std::sqrt(squared_distance(a, b)); }
 
 // The vertices that matter to one split: the edge's ends and the sample in its middle.
 struct SplitEdge {

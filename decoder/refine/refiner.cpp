@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "decoder/pyramid/vector3.h"
+
 namespace gim {
 namespace {
 
@@ -39,10 +41,8 @@ bool Needs::is_outside(const SampleValue& value) const {
         if (square > r * r) return true;
     }
     if (rule_.sphere[3] > 0) {
-        float square = 0;
-        for (size_t k = 0; k < 3; ++k) square += (p[k] - rule_.sphere[k]) * (p[k] - rule_.sphere[k]);
         const float reach = r + rule_.sphere[3];
-        if (square > reach * reach) return true;
+        if (squared_distance(p, rule_.sphere) > reach * reach) return true;
     }
     for (uint32_t i = 0; i < rule_.plane_count; ++i) {
         if (distance_to_plane(rule_.planes + 4 * size_t{i}, p) < -r) return true;
@@ -55,12 +55,7 @@ float Needs::of(uint32_t vertex) const {
     if (is_outside(value)) return 0;
     float need = value.error * per_unit_;
     if (pixels_ > 0 && value.error > 0) {
-        float square = 0;
-        for (size_t k = 0; k < 3; ++k) {
-            const float d = value.position[k] - rule_.eye[k];
-            square += d * d;
-        }
-        const float distance = std::sqrt(square) - value.radius;
+        const float distance = std::sqrt(squared_distance(value.position, rule_.eye)) - value.radius;
         need = std::max(need, distance > 0 ? value.error * pixels_ / distance : kMostNeed);
     }
     if (rule_.need) need = std::max(need, rule_.need(rule_.user, vertex, value.position, value.error, value.radius));
