@@ -50,10 +50,14 @@ TileBase base_within(const TileableSurface& surface, size_t tiles, uint64_t samp
     const auto stays_within = [&](const TileBase& base) {
         return exponent_within(static_cast<uint32_t>(base.pairing.quads.size()), samples) >= least;
     };
-    TileBase base = base_of(tiles);
+    TileBase first = base_of(tiles);
+    if (stays_within(first)) return first;
     const size_t fewest = tiles - tiles / 4, step = tiles / 24 + 1;
-    for (size_t fewer = tiles; !stays_within(base) && fewer >= fewest + step;) base = base_of(fewer -= step);
-    return stays_within(base) ? std::move(base) : base_of(tiles);
+    for (size_t fewer = tiles; fewer >= fewest + step;) {
+        TileBase base = base_of(fewer -= step);
+        if (stays_within(base)) return base;
+    }
+    return first;
 }
 
 struct MappedBase {
