@@ -7,7 +7,7 @@
 #include <span>
 
 #include "decoder/layout/plane_level.h"
-#include "decoder/refine/quad_domain.h"
+#include "decoder/layout/tile_glue.h"
 #include "format/container.h"
 #include "gim/decoder.h"
 
