@@ -125,6 +125,7 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
     if (c.type == ChunkType::kText) name = "META";
     if (c.type == ChunkType::kNormals) name = "NRML";
     if (c.type == ChunkType::kColors) name = "COLR";
+    if (c.type == ChunkType::kDisplacements) name = "DISP";
     std::memcpy(chunk->name, name, 4);
     chunk->type = static_cast<uint32_t>(c.type);
     chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.level_count - levels_seen) : -1;

@@ -10,19 +10,15 @@
 namespace gim {
 namespace {
 
-static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1);
+static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1 && GIM_PLANE_DISPLACEMENTS == 2);
 
 // Calls f(reader, request, plane) for a level of a plane that is there, with the functions of the file's layout.
 template <class F>
 gim_status with_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
                       uint32_t level, const F& f) {
     return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
-        if (kind >= kPlaneKinds) return Status::kBadArgument;
-        Chunk chunk;
-        uint64_t offset = 0;
-        if (!find_chunk(request.header, plane_type(kind), &chunk, &offset)) return Status::kNoSuchPlane;
         PlaneLevel plane;
-        if (Status s = reader.open_plane(request, chunk, offset, &plane); s != Status::kOk) return s;
+        if (Status s = open_plane(reader, request, kind, &plane); s != Status::kOk) return s;
         return f(reader, request, plane);
     });
 }
@@ -30,6 +26,17 @@ gim_status with_plane(const gim_info* info, const void* bytes, size_t size, uint
 void finish_color(float* c) {
     from_luma(c);
     for (int k = 0; k < 3; ++k) c[k] = std::min(std::max(c[k], 0.0f), 255.0f) / 255.0f;
+}
+
+// Turns `count` triples of samples into values.
+void finish(uint32_t kind, float step, float* values, size_t count) {
+    for (size_t i = 0; i < 3 * count; i += 3) {
+        if (kind == GIM_PLANE_NORMALS) normalize(values + i);
+        if (kind == GIM_PLANE_COLORS) finish_color(values + i);
+        if (kind == GIM_PLANE_DISPLACEMENTS) {
+            for (size_t k = 0; k < 3; ++k) values[i + k] = step * values[i + k];
+        }
+    }
 }
 
 }  // namespace
@@ -62,9 +69,7 @@ gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size
         const uint64_t needed = reader.plane_scratch_size(request, plane);
         if (Status s = check_scratch({scratch, scratch_size}, needed); s != Status::kOk) return s;
         if (Status s = reader.decode_plane(request, plane, scratch, values); s != Status::kOk) return s;
-        const size_t count = size_t{plane.width} * plane.height * 3;
-        for (size_t i = 0; i < count; i += 3)
-            kind == GIM_PLANE_NORMALS ? normalize(values + i) : finish_color(values + i);
+        finish(kind, request.header.step, values, size_t{plane.width} * plane.height);
         return Status::kOk;
     };
     return with_plane(info, bytes, size, image, kind, level, decode);

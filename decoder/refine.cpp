@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <span>
 
 #include "decoder/layout/level_reader.h"
+#include "decoder/refine/details.h"
 #include "decoder/refine/patches.h"
 #include "decoder/refine/quad_domain.h"
 #include "decoder/refine/refined_mesh.h"
@@ -60,6 +62,49 @@ Status read_shape(const LevelReader& reader, const LevelRequest& request, Domain
     return Status::kOk;
 }
 
+gim_domain_info describe(const DomainShape& shape, uint64_t scratch) {
+    return {shape.tiles,        shape.intervals, shape.vertices, shape.most_triangles(),
+            domain_size(shape), scratch,         shape.width(),  shape.height()};
+}
+
+// Chooses diagonals and rates samples, once it is known how tiles are glued. edges: room for edge_slots(shape).
+const gim_domain* finish(const DomainShape& shape, const float* positions, uint64_t* edges, DomainMemory* parts) {
+    choose_diagonals(shape, positions, edges, &parts->glue);
+    new (parts->head) gim_domain{QuadDomain(shape, parts->glue, parts->values)};
+    rate_samples(parts->head->domain, positions, parts->values);
+    return parts->head;
+}
+
+// Level 0, and the finer image that displacements make of it.
+struct Detailed {
+    PlaneLevel plane;
+    uint32_t finer = 0;
+    DomainShape coarse, shape;
+    uint64_t scratch = 0;
+
+    LevelRequest finer_than(const LevelRequest& request) const {
+        return {request.header, request.file, request.limits, request.image, 0, finer};
+    }
+};
+
+// request: for level 0.
+Status read_detailed(const LevelReader& reader, const LevelRequest& request, uint32_t plane_level, Detailed* d) {
+    const LevelRequest of_plane = {request.header, request.file, request.limits, request.image, plane_level};
+    if (Status s = open_plane(reader, of_plane, GIM_PLANE_DISPLACEMENTS, &d->plane); s != Status::kOk) return s;
+    gim_level_info level;
+    if (Status s = reader.level_info(request, &level); s != Status::kOk) return s;
+    while (uint64_t{level.width - 1} << d->finer < d->plane.width - 1) ++d->finer;
+    if (uint64_t{level.width - 1} << d->finer != d->plane.width - 1) return Status::kNoSuchLevel;
+    uint64_t of_coarse = 0, of_fine = 0;
+    if (Status s = read_shape(reader, request, &d->coarse, &of_coarse); s != Status::kOk) return s;
+    if (Status s = read_shape(reader, d->finer_than(request), &d->shape, &of_fine); s != Status::kOk) return s;
+    Arena arena(nullptr);
+    (void)lay_out_glue(d->coarse, &arena);
+    (void)arena.take<uint8_t>(0);
+    d->scratch = arena.used() + std::max(of_coarse, of_fine);
+    return Status::kOk;
+}
+
 constexpr uintptr_t kAlignment = 16;
 bool is_aligned(const void* memory) { return memory && reinterpret_cast<uintptr_t>(memory) % kAlignment == 0; }
 
@@ -80,7 +125,7 @@ gim_status gim_read_domain_info(const gim_info* info, const void* bytes, size_t 
         DomainShape shape;
         uint64_t scratch = 0;
         if (Status s = read_shape(reader, request, &shape, &scratch); s != Status::kOk) return s;
-        *out = {shape.tiles, shape.intervals, shape.vertices, shape.most_triangles(), domain_size(shape), scratch};
+        *out = describe(shape, scratch);
         return Status::kOk;
     });
 }
@@ -98,12 +143,57 @@ gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size,
         Arena arena(memory);
         DomainMemory parts(shape, &arena);
         if (Status s = reader.read_glue(request, shape, scratch, &parts.glue); s != Status::kOk) return s;
-        choose_diagonals(shape, positions, static_cast<uint64_t*>(scratch), &parts.glue);
-        new (parts.head) gim_domain{QuadDomain(shape, parts.glue, parts.values)};
-        rate_samples(parts.head->domain, positions, parts.values);
-        *domain = parts.head;
+        *domain = finish(shape, positions, static_cast<uint64_t*>(scratch), &parts);
         return Status::kOk;
     });
+}
+
+gim_status gim_read_detailed_domain_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                         uint32_t plane_level, gim_domain_info* out) {
+    if (!out) return GIM_BAD_ARGUMENT;
+    return with_image(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
+        Detailed d;
+        if (Status s = read_detailed(reader, request, plane_level, &d); s != Status::kOk) return s;
+        *out = describe(d.shape, d.scratch);
+        return Status::kOk;
+    });
+}
+
+gim_status gim_open_detailed_domain(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                    uint32_t plane_level, const float* positions, const float* displacements,
+                                    float* detailed, void* memory, size_t memory_size, void* scratch,
+                                    size_t scratch_size, const gim_domain** domain) {
+    if (!positions || !displacements || !detailed || !domain || !is_aligned(memory)) return GIM_BAD_ARGUMENT;
+    return with_image(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
+        Detailed d;
+        if (Status s = read_detailed(reader, request, plane_level, &d); s != Status::kOk) return s;
+        if (Status s = check_scratch({scratch, scratch_size}, d.scratch); s != Status::kOk) return s;
+        if (memory_size < domain_size(d.shape)) return Status::kScratchTooSmall;
+        Arena of_memory(memory), of_scratch(scratch);
+        DomainMemory parts(d.shape, &of_memory);
+        TileGlue coarse_glue = lay_out_glue(d.coarse, &of_scratch);
+        uint8_t* rest = of_scratch.take<uint8_t>(0);
+        if (Status s = reader.read_glue(request, d.coarse, rest, &coarse_glue); s != Status::kOk) return s;
+        if (Status s = reader.read_glue(d.finer_than(request), d.shape, rest, &parts.glue); s != Status::kOk) return s;
+        displace(QuadDomain(d.coarse, coarse_glue, nullptr), QuadDomain(d.shape, parts.glue, nullptr),
+                 {displacements, d.plane.width, d.finer}, positions, detailed);
+        *domain = finish(d.shape, detailed, reinterpret_cast<uint64_t*>(rest), &parts);
+        return Status::kOk;
+    });
+}
+
+void gim_lay_out_samples(const gim_domain* domain, const float* of_vertices, uint32_t components, float* samples) {
+    const DomainShape& shape = domain->domain.shape();
+    const size_t width = shape.width();
+    std::fill_n(samples, width * shape.height() * components, std::numeric_limits<float>::quiet_NaN());
+    for (uint32_t t = 0; t < shape.tiles; ++t) {
+        for (uint32_t row = 0; row <= shape.intervals; ++row) {
+            float* to = samples + ((shape.row_of(t) + row) * width + shape.column_of(t)) * components;
+            for (uint32_t column = 0; column <= shape.intervals; ++column, to += components)
+                std::copy_n(of_vertices + size_t{domain->domain.vertex_at(t, row, column)} * components, components,
+                            to);
+        }
+    }
 }
 
 void gim_vertex_worth(const gim_domain* domain, uint32_t vertex, float* error, float* radius) {
@@ -176,10 +266,8 @@ gim_status gim_refine(gim_refined* mesh, const gim_rule* rule, uint32_t most_ope
 
 gim_status gim_read_patches(const gim_refined* mesh, gim_patch* patches, uint32_t capacity, uint32_t* count) {
     if (!mesh || !count || (!patches && capacity > 0)) return GIM_BAD_ARGUMENT;
-    const QuadDomain& domain = mesh->mesh.domain();
-    const TileGlue& glue = domain.glue();
-    const uint64_t rows = (domain.shape().tiles + glue.columns - 1) / glue.columns;
-    if (glue.columns * uint64_t{glue.slot} > UINT16_MAX || rows * glue.slot > UINT16_MAX) return GIM_LIMIT_EXCEEDED;
+    const DomainShape& shape = mesh->mesh.domain().shape();
+    if (shape.width() - 1 > UINT16_MAX || shape.height() - 1 > UINT16_MAX) return GIM_LIMIT_EXCEEDED;
     PatchList list(patches, capacity);
     list_patches(mesh->mesh, &list);
     *count = list.count();

@@ -30,4 +30,13 @@ gim_status with_image(const gim_info* info, const void* bytes, size_t size, uint
     return code(f(reader_of(header.layout), request));
 }
 
+// Opens a level of the plane of a kind. request.level: of the plane.
+inline Status open_plane(const LevelReader& reader, const LevelRequest& request, uint32_t kind, PlaneLevel* plane) {
+    if (kind >= kPlaneKinds) return Status::kBadArgument;
+    Chunk chunk;
+    uint64_t offset = 0;
+    if (!find_chunk(request.header, plane_type(kind), &chunk, &offset)) return Status::kNoSuchPlane;
+    return reader.open_plane(request, chunk, offset, plane);
+}
+
 }  // namespace gim

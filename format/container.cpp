@@ -33,11 +33,11 @@ bool in_range(Real value, Real low, Real high) {
     return value >= low && value <= high;
 }  // false for a NaN
 
-// Checks the chunks: SEAM once, then level_count times LEVL, then NRML and COLR at most once each. META may stand
-// anywhere, but once; unknown optional chunks may stand anywhere.
+// Checks the chunks: SEAM once, then level_count times LEVL, then each kind of plane at most once. META may stand anywhere,
+// but once; unknown optional chunks may stand anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
-    uint32_t seams = 0, levels = 0, texts = 0, normals = 0, colors = 0;
+    uint32_t seams = 0, levels = 0, texts = 0, planes_seen = 0;
     header->file_size = header->index_size;
     header->chunk_count = 0;
     while (reader.left() > 0) {
@@ -57,10 +57,12 @@ Status check_index(Header* header) {
                 if (!chunk.optional || texts++ > 0) return Status::kMalformed;
                 break;
             case ChunkType::kNormals:
-            case ChunkType::kColors: {
-                uint32_t& planes = chunk.type == ChunkType::kNormals ? normals : colors;
-                if (!chunk.optional || chunk.zstd || planes++ > 0 || levels != header->level_count)
+            case ChunkType::kColors:
+            case ChunkType::kDisplacements: {
+                const uint32_t kind = 1u << static_cast<uint32_t>(chunk.type);
+                if (!chunk.optional || chunk.zstd || (planes_seen & kind) != 0 || levels != header->level_count)
                     return Status::kMalformed;
+                planes_seen |= kind;
                 break;
             }
             default:

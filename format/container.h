@@ -27,11 +27,12 @@ enum class FileLayout : uint8_t {
 enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };
 
 enum class ChunkType : uint32_t {
-    kSeams = 0,    // SEAM, critical: the sidebands of all images, or the chart table, or how tiles are glued
-    kLevel = 1,    // LEVL, critical: one level of all images; coarsest first
-    kText = 2,     // META, optional: UTF-8 text about the file
-    kNormals = 3,  // NRML, optional: normals at a resolution of their own (format/plane_code.h)
-    kColors = 4,   // COLR, optional: colours, likewise
+    kSeams = 0,          // SEAM, critical: the sidebands of all images, or the chart table, or how tiles are glued
+    kLevel = 1,          // LEVL, critical: one level of all images; coarsest first
+    kText = 2,           // META, optional: UTF-8 text about the file
+    kNormals = 3,        // NRML, optional: normals at a resolution of their own (format/plane_code.h)
+    kColors = 4,         // COLR, optional: colours, likewise
+    kDisplacements = 5,  // DISP, optional: displacements, likewise
 };
 
 struct ContainerLimits {

@@ -22,9 +22,11 @@ struct PlaneChunk {
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
 };
 
-// Kinds of planes, numbered as in gim/decoder.h (0 normals, 1 colours), and their chunk types.
-inline constexpr uint32_t kPlaneKinds = 2;
-inline ChunkType plane_type(uint32_t kind) { return kind == 0 ? ChunkType::kNormals : ChunkType::kColors; }
+// Kinds of planes, numbered as in gim/decoder.h (0 normals, 1 colours, 2 displacements), and their chunk types.
+inline constexpr uint32_t kPlaneKinds = 3;
+inline ChunkType plane_type(uint32_t kind) {
+    return static_cast<ChunkType>(static_cast<uint32_t>(ChunkType::kNormals) + kind);
+}
 
 inline constexpr uint32_t kMaxTexelExponent = 6;  // of planes on charts and on tiles
 

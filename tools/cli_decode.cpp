@@ -63,6 +63,8 @@ Subcommand add_decode(CLI::App& app) {
            "Write the file's colours here: .png (sRGB) or .exr (linear). If OUT is an .obj file, also write an .mtl "
            "beside it that names them")
         ->check(picture_name());
+    sub->add_flag("--plain", c.plain,
+                  "Leave out displacements, which gim emboss has added. They are in meshes at level 0");
     sub->add_flag("--fused", c.fused, "GLB: share the vertices on the cut and leave out texture coordinates");
     sub->add_flag("--split-sharp", c.split_sharp,
                   "PLY: repeat the vertices on sharp edges, so that their normals show the edges. The mesh is then no "

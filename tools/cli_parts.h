@@ -17,6 +17,8 @@ Subcommand add_encode(CLI::App& app);
 Subcommand add_decode(CLI::App& app);
 Subcommand add_info(CLI::App& app);
 Subcommand add_compare(CLI::App& app);
+Subcommand add_emboss(CLI::App& app);
+Subcommand add_bench_scene(CLI::App& app);
 Subcommand add_render(CLI::App& app);
 
 // Accepts 2^j + 1, from least to most.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gim/emboss.h"
 #include "gim/encoder.h"
 #include "tools/input.h"
 #include "tools/memory_budget.h"
@@ -30,9 +31,27 @@ struct DecodeCommand {
     std::string format;  // an extension; empty: that of the output
     uint32_t level = 0;
     bool fused = false, split_sharp = false;
+    bool plain = false;                 // without displacements
     std::string normal_map, color_map;  // .png or .exr to write; empty: none
 };
 int run_decode(const DecodeCommand& command);
+
+struct EmbossCommand {
+    std::string input, output;
+    std::string picture;
+    EmbossOptions options;
+    bool invert = false;  // dark is high
+    bool json = false;
+};
+int run_emboss(const EmbossCommand& command);
+
+struct BenchSceneCommand {
+    std::string scene;
+    std::string json;    // file for the figures; empty: none
+    std::string frames;  // folder for pictures; empty: none
+    bool draws = true, compares = true;
+};
+int run_bench_scene(const BenchSceneCommand& command);
 
 struct InfoCommand {
     std::string input;

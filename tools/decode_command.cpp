@@ -106,7 +106,9 @@ int run_decode(const DecodeCommand& command) {
 
     const Result<Bytes> file = read_named(command.input);
     if (!file.ok()) return report_error(input_name, file.error());
-    const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes);
+    const bool has_details = !command.plain && *format != SurfaceFormat::kExr;
+    const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes,
+                                                has_details ? WithDetails::kYes : WithDetails::kNo);
     if (!images.ok()) return report_error(input_name, images.error());
 
     std::vector<OutputFile> files;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gim/decoder.hpp"
+#include "tools/details.h"
 
 namespace gim {
 namespace {
@@ -86,7 +87,8 @@ std::string describe_status(gim_status status) {
 
 bool is_gim(const Bytes& file) { return !file.empty() && Decoder().open(file) != GIM_NOT_GIM; }
 
-Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes) {
+Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes,
+                                                WithDetails details) {
     Decoder decoder;
     gim_status status = decoder.open(file);
     if (status != GIM_OK) return failed("header", status);
@@ -99,6 +101,8 @@ Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t leve
         status = decode_image(decoder, i, level, &image);
         if (status != GIM_OK) return failed(what, status);
         reached = std::max(reached, image.level);
+        status = level == 0 && details == WithDetails::kYes ? add_details(decoder, file, i, &image) : GIM_OK;
+        if (status != GIM_OK) return failed(what + ", displacements", status);
         if (planes == WithPlanes::kNo) continue;
         status = decode_plane(decoder, i, GIM_PLANE_NORMALS, &image.normal_map);
         if (status != GIM_OK) return failed(what + ", normal map", status);

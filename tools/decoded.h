@@ -69,8 +69,11 @@ std::vector<float> at_samples(const GridMesh& mesh, const std::vector<float>& va
 
 // Decodes all images of a file at one level. An image without that level gives its coarsest one. Fails with the text of
 // GIM_NO_SUCH_LEVEL if no image has the level. Planes always have full resolution.
+// Displacements change the surface of level 0 only (details.h).
 enum class WithPlanes { kNo, kYes };
-Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes = WithPlanes::kNo);
+enum class WithDetails { kNo, kYes };
+Result<std::vector<DecodedImage>> decode_images(const Bytes& file, uint32_t level, WithPlanes planes = WithPlanes::kNo,
+                                                WithDetails details = WithDetails::kYes);
 
 // All images as one mesh with shared vertices. It has shading if an image has sharp edges.
 TriangleMesh to_mesh(const std::vector<DecodedImage>& images);

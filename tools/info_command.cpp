@@ -58,7 +58,10 @@ const char* paths_name(uint32_t layout) {
 
 const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS ? "lossless" : "lossy"; }
 
-const char* plane_name(uint32_t kind) { return kind == GIM_PLANE_NORMALS ? "normals" : "colors"; }
+const char* plane_name(uint32_t kind) {
+    constexpr const char* kNames[] = {"normals", "colors", "displacements"};
+    return kNames[kind];
+}
 
 void add_image(const Decoder& decoder, uint32_t index, Description& d) {
     const std::string name = "image " + std::to_string(index);
@@ -79,7 +82,7 @@ void add_image(const Decoder& decoder, uint32_t index, Description& d) {
         if (status != GIM_OK) d.problems.push_back(name + ", seams: " + describe_status(status));
         image.seam_points = static_cast<uint32_t>(std::set<uint32_t>(class_of.begin(), class_of.end()).size());
     }
-    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
+    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS, GIM_PLANE_DISPLACEMENTS}) {
         DecoderPlane plane;
         status = decoder.read_plane(index, kind, 0, &plane);
         if (status == GIM_NO_SUCH_PLANE) continue;

@@ -25,9 +25,11 @@ declare -A may_include=(
     [encoder/squares]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout"
     [encoder/charts]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout"
     [encoder/tiles]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout"
+    [encoder/emboss]="format decoder/pyramid decoder/squares decoder/tiles encoder/base encoder/surface encoder/code encoder/image encoder/planes encoder/tiles"
     [encoder]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout encoder/squares encoder/charts encoder/tiles"
     [corpus]=""
-    [tools]="corpus"
+    [tools]="corpus tools/scene"
+    [tools/scene]="tools tools/gpu"
     [tools/rd]="tools corpus"
     [tools/train]="format decoder/squares encoder/tiles"
 )

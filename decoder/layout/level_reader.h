@@ -19,6 +19,7 @@ struct LevelRequest {
     std::span<const uint8_t> file;
     const ContainerLimits& limits;
     uint32_t image = 0, level = 0;
+    uint32_t finer = 0;  // of a domain: how often its intervals are halved beyond the level
 };
 
 // Memory of the caller.

@@ -96,9 +96,8 @@ class PatchWalk {
     }
 
     void add(const CellAt& cell, const Whole& whole) {
-        const TileGlue& glue = domain_.glue();
-        const uint32_t row = cell.tile / glue.columns * glue.slot + cell.row;
-        const uint32_t column = cell.tile % glue.columns * glue.slot + cell.column;
+        const uint32_t row = domain_.shape().row_of(cell.tile) + cell.row;
+        const uint32_t column = domain_.shape().column_of(cell.tile) + cell.column;
         list_->add({static_cast<uint16_t>(column), static_cast<uint16_t>(row), static_cast<uint8_t>(cell.exponent),
                     whole.inside, whole.finer, 0});
     }

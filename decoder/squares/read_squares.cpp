@@ -31,6 +31,15 @@ Status open_level(const LevelRequest& request, uint32_t most, Level* level) {
     return Status::kOk;
 }
 
+// Halves the steps between samples so many times.
+Status make_finer(uint32_t times, Level* level) {
+    if (times > kMaxSideExponent || (uint64_t{level->side - 1} << times) > (uint64_t{1} << kMaxSideExponent))
+        return Status::kLimitExceeded;
+    level->side = ((level->side - 1) << times) + 1;
+    level->class_count = ring_class_count(level->seams, level->side);
+    return Status::kOk;
+}
+
 uint64_t scratch_size(uint32_t side) {
     Arena arena(nullptr);
     (void)lay_out(side, &arena);
@@ -158,8 +167,10 @@ Status read_square_seams(const LevelRequest& request, uint32_t* class_of, uint32
 Status square_domain_shape(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size) {
     Level l;
     if (Status s = open_level(request, UINT32_MAX, &l); s != Status::kOk) return s;
-    const uint32_t intervals = 1u << (l.coarsest - request.level), cells = (l.side - 1) / intervals;
-    *shape = {cells * cells, intervals, l.class_count + (l.side - 2) * (l.side - 2)};
+    const uint32_t coarsest_intervals = 1u << (l.coarsest - request.level), cells = (l.side - 1) / coarsest_intervals;
+    if (Status s = make_finer(request.finer, &l); s != Status::kOk) return s;
+    const uint32_t intervals = coarsest_intervals << request.finer;
+    *shape = {cells * cells, intervals, l.class_count + (l.side - 2) * (l.side - 2), cells, intervals};
     Arena arena(nullptr);
     (void)lay_out_glue_work(l.side, cells + 1, &arena);
     *scratch_size = arena.used();
@@ -169,6 +180,7 @@ Status square_domain_shape(const LevelRequest& request, DomainShape* shape, uint
 Status read_square_glue(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue) {
     Level l;
     if (Status s = open_level(request, request.level, &l); s != Status::kOk) return s;
+    if (Status s = make_finer(request.finer, &l); s != Status::kOk) return s;
     const uint32_t n = shape.intervals, cells = (l.side - 1) / n;
     Arena arena(scratch);
     const GlueWork work = lay_out_glue_work(l.side, cells + 1, &arena);
@@ -196,8 +208,6 @@ Status read_square_glue(const LevelRequest& request, const DomainShape& shape, v
         glue->inner[t] = n > 1 ? fine.at(row * n + 1, column * n + 1) : 0;
     }
     glue->row_step = l.side - 2;
-    glue->slot = n;
-    glue->columns = cells;
     const QuadFault fault = find_mates({work.quads, shape.tiles}, coarse_classes + (cells - 1) * (cells - 1),
                                        {work.mates, work.mates_size}, glue->mate);
     return fault.kind == QuadFault::Kind::kFine ? Status::kOk : Status::kMalformed;

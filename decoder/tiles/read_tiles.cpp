@@ -220,7 +220,14 @@ Status tile_domain_shape(const LevelRequest& request, DomainShape* shape, uint64
     gim_level_info info;
     if (Status s = tile_level_info(request, &info); s != Status::kOk) return s;
     const TileShape& tiles = request.header.tiles;
-    *shape = {tiles.tiles, tiles.intervals(request.level), info.vertex_count};
+    if (request.finer > kMaxSideExponent) return Status::kLimitExceeded;
+    const uint64_t side = uint64_t{tiles.intervals(request.level)} << request.finer;
+    if (side > (uint64_t{1} << kMaxSideExponent)) return Status::kLimitExceeded;
+    const uint64_t vertices = tiles.vertices + tiles.edges() * (side - 1) + tiles.tiles * (side - 1) * (side - 1);
+    if (vertices > UINT32_MAX) return Status::kLimitExceeded;
+    const auto slot = static_cast<uint32_t>(side + 1);
+    *shape = {tiles.tiles, static_cast<uint32_t>(side), static_cast<uint32_t>(vertices),
+              TileAtlas(tiles.tiles, static_cast<uint32_t>(side)).width() / slot, slot};
     Arena arena(nullptr);
     (void)lay_out_complex(tiles, &arena);
     *scratch_size = arena.used();
@@ -241,8 +248,6 @@ Status read_tile_glue(const LevelRequest& request, const DomainShape& shape, voi
     }
     for (uint32_t t = 0; t < complex.tiles; ++t) glue->inner[t] = samples.inner(t);
     glue->row_step = shape.intervals - 1;
-    glue->slot = shape.intervals + 1;
-    glue->columns = TileAtlas(shape.tiles, shape.intervals).width() / glue->slot;
     return Status::kOk;
 }
 

@@ -82,6 +82,7 @@ std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<con
     Header header;
     if (parse_header(file, no_limits, &header) != Status::kOk) return {file.begin(), file.end()};
     std::vector<Payload> payloads;
+    std::vector<bool> is_placed(planes.size(), false);
     ChunkWalk walk(header);
     Chunk chunk;
     for (uint64_t offset = 0; walk.next(&chunk, &offset);) {
@@ -89,10 +90,14 @@ std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<con
             std::find_if(planes.begin(), planes.end(), [&](const CodedPlane& p) { return p.type == chunk.type; });
         if (plane != planes.end()) {
             payloads.push_back(make_payload(plane->type, true, plane->payload));
+            is_placed[static_cast<size_t>(plane - planes.begin())] = true;
             continue;
         }
         const auto begin = file.begin() + static_cast<ptrdiff_t>(offset);
         payloads.push_back({chunk, {begin, begin + static_cast<ptrdiff_t>(chunk.size)}});
+    }
+    for (size_t i = 0; i < planes.size(); ++i) {
+        if (!is_placed[i]) payloads.push_back(make_payload(planes[i].type, true, planes[i].payload));
     }
     return join(header, payloads);
 }

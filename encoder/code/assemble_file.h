@@ -22,7 +22,7 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
                                    std::span<const std::vector<uint8_t>> levels, std::span<const CodedPlane> planes,
                                    const std::string& text);
 
-// Returns the file with these planes in place of its own ones of the same types.
+// Returns the file with these planes in place of its own ones of the same types, or after all of its chunks.
 std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<const CodedPlane> planes);
 
 // Returns the file with the measured PSNR of each level (finest first, dB) in its header. The file must have room for

@@ -70,7 +70,7 @@ void share_texels(const QuadComplex& complex, uint32_t side, std::vector<float>&
 
 // An analysed plane with what it takes to code it.
 struct TilePlane {
-    CodedComplex coded;
+    OwnComplex complex;
     TileShape shape;
     TilePyramid<float> pyramid;
 };
@@ -120,12 +120,17 @@ PlaneCoder tile_plane_coder(const TileImage& tiles, const TexelGrid& grid, const
         const auto value = values.begin() + static_cast<ptrdiff_t>(3 * slots.at(tile, row, column));
         grids.insert(grids.end(), value, value + 3);
     });
-    share_texels(view, slots.side(), grids);
-    const TileShape shape = tile_plane_shape(shape_of(tiles, view, false), slots.exponent());
-    TilePyramid<float> pyramid = analyse_tiles<Tiles97>(view, std::move(grids), shape.exponent);
-    const auto plane = std::make_shared<const TilePlane>(TilePlane{std::move(coded), shape, std::move(pyramid)});
+    const TileShape shape = shape_of(tiles, view, false);
+    return tile_grid_coder(std::move(coded.complex), shape, slots.exponent(), std::move(grids));
+}
+
+PlaneCoder tile_grid_coder(OwnComplex complex, const TileShape& shape, uint32_t texels, std::vector<float> grids) {
+    const TileShape of_plane = tile_plane_shape(shape, texels);
+    share_texels(complex.view(), of_plane.intervals(0), grids);
+    TilePyramid<float> pyramid = analyse_tiles<Tiles97>(complex.view(), std::move(grids), of_plane.exponent);
+    const auto plane = std::make_shared<const TilePlane>(TilePlane{std::move(complex), of_plane, std::move(pyramid)});
     return [plane](float quantizer) {
-        const QuadComplex& on = plane->coded.complex.view();
+        const QuadComplex& on = plane->complex.view();
         TilePyramid<int32_t> integers = quantize_tiles<Tiles97>(on, plane->shape, plane->pyramid, {quantizer});
         return std::move(code_tiles(on, integers, 1, CoefficientKind::kPlanes)[0]);
     };

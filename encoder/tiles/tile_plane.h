@@ -7,7 +7,9 @@
 
 #include "encoder/image/geometry_image.h"
 #include "encoder/planes/plane_images.h"
+#include "encoder/tiles/own_complex.h"
 #include "encoder/tiles/tile_image.h"
+#include "format/container.h"
 
 namespace gim {
 
@@ -21,5 +23,9 @@ TexelGrid tile_texels(const TileImage& tiles, const GeometryImage& atlas, uint8_
 // values: a triple per texel of the grid. Copies of a texel in several tiles get their mean. The complex must be that of a
 // surface. O(texels).
 PlaneCoder tile_plane_coder(const TileImage& tiles, const TexelGrid& grid, const std::vector<float>& values);
+
+// The coder of a plane on tiles that are in the order of a file. complex: of the positions, whose shape is `shape`. grids:
+// per tile (2^(shape.exponent + texels) + 1)^2 triples, row by row; copies of a texel get their mean. O(texels).
+PlaneCoder tile_grid_coder(OwnComplex complex, const TileShape& shape, uint32_t texels, std::vector<float> grids);
 
 }  // namespace gim

@@ -90,7 +90,7 @@ inline Decoded decode_all(const std::vector<uint8_t>& file) {
         for (uint32_t level = 0; out.status == GIM_OK && level <= coarsest; ++level)
             out.status = decode_one(info, file, image, level, &coarsest, &out);
     }
-    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
+    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS, GIM_PLANE_DISPLACEMENTS}) {
         for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
             out.status = decode_plane(info, file, image, kind, &out);
     }

@@ -164,13 +164,16 @@ GIM_API gim_status gim_decode_grid(const gim_info* info, const void* bytes, size
  * column/(width-1) of the image's level 0. A file has at most one plane of each kind for all its images.
  *   GIM_PLANE_NORMALS  the input's unit normals in object space, pointing out of the surface; 0 0 0 where undefined
  *   GIM_PLANE_COLORS   red, green, blue in 0..1, encoded as sRGB
+ *   GIM_PLANE_DISPLACEMENTS  what is to be added to points of the surface at level 0, in object units (gim/refine.h,
+ *                      "details"); 0 0 0 almost everywhere
  * GIM_LAYOUT_GIM, GIM_LAYOUT_TILES: samples of one surface point are bit-equal, on sharp edges too. GIM_LAYOUT_MCGIM,
  * GIM_LAYOUT_TILES: between charts and between tiles the values go on, so that a texture filter may read them. */
-enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1 };
+enum { GIM_PLANE_NORMALS = 0, GIM_PLANE_COLORS = 1, GIM_PLANE_DISPLACEMENTS = 2 };
 typedef struct gim_plane_info {
     uint32_t width, height;  /* samples at this level of the plane */
     uint32_t coarsest_level; /* of the plane; level L keeps every 2^L-th row and column */
-    float quantizer;         /* quantizer step as our encoder uses it: colours in 1/255, normals in 1/1024 */
+    float quantizer;         /* quantizer step as our encoder uses it: colours in 1/255, normals in 1/1024,
+                              displacements in units of the file */
     uint64_t stream_size;    /* bytes of this image's plane in the file */
     uint64_t prefix_size;    /* bytes of the file, from its start, that the plane needs */
     uint64_t scratch_size;   /* bytes of scratch that gim_decode_plane needs on this level */

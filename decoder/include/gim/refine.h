@@ -45,6 +45,7 @@ typedef struct gim_domain_info {
     uint64_t most_triangles; /* of the finest mesh: 2 * tile_count * intervals^2 */
     uint64_t domain_size;    /* bytes of memory for gim_open_domain */
     uint64_t scratch_size;   /* bytes of scratch for gim_open_domain */
+    uint32_t width, height;  /* of the domain's image, in samples */
 } gim_domain_info;
 
 /* level: the finest one to refine to. Reads the chunk of seams. Cost as gim_read_level_info. */
@@ -59,6 +60,31 @@ GIM_API gim_status gim_read_domain_info(const gim_info* info, const void* bytes,
 GIM_API gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                    const float* positions, void* memory, size_t memory_size, void* scratch,
                                    size_t scratch_size, const gim_domain** domain);
+
+/* ---- details ----
+ * A file may hold displacements (GIM_PLANE_DISPLACEMENTS) that are finer than its samples: fine details of a part of the
+ * surface. A detailed domain has the samples of that plane: those of level 0, others between them, and all of them
+ * displaced. Its mesh has the fine triangles where a rule wants them, near the details, and no cracks at their rim.
+ * plane_level  of the plane; its image is as fine as level 0 at least, else GIM_NO_SUCH_LEVEL
+ * GIM_NO_SUCH_PLANE if the file has no displacements. Vertices are numbered as those of gim_decode_mesh would be at that
+ * fineness. */
+GIM_API gim_status gim_read_detailed_domain_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                                 uint32_t plane_level, gim_domain_info* shape);
+
+/* As gim_open_domain.
+ * positions      as gim_decode_mesh wrote them for level 0
+ * displacements  as gim_decode_plane wrote them for that level of the plane
+ * detailed       receives 3 floats for each of the vertex_count vertices: the vertex buffer of the domain */
+GIM_API gim_status gim_open_detailed_domain(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                            uint32_t plane_level, const float* positions, const float* displacements,
+                                            float* detailed, void* memory, size_t memory_size, void* scratch,
+                                            size_t scratch_size, const gim_domain** domain);
+
+/* Lays out values of vertices as the samples of the domain's image, as gim_decode_positions does: for a texture, to draw
+ * patches from. components: floats a vertex. samples: domain_info's width * height * components floats; samples that no
+ * tile has are NaN. Cost: O(samples). */
+GIM_API void gim_lay_out_samples(const gim_domain* domain, const float* of_vertices, uint32_t components,
+                                 float* samples);
 
 /* What a vertex is worth, in object units: `error` bounds how far the mesh errs at its sample and at all samples that can
  * only come after it, along the edges that they would split, while it is missing. `radius`: a ball around its position

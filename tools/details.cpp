@@ -1,0 +1,218 @@
+#include "tools/details.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "gim/refine.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kMostTriangles = 1u << 24;
+constexpr float kErrorOfDepth = 0.01f;  // what is left out, as a share of the largest displacement
+
+class AlignedBytes {
+  public:
+    explicit AlignedBytes(uint64_t size) : blocks_(size / sizeof(Block) + 1) {}
+    void* get() { return blocks_.data(); }
+    size_t size() const { return blocks_.size() * sizeof(Block); }
+
+  private:
+    struct alignas(16) Block {
+        std::byte bytes[16];
+    };
+    std::vector<Block> blocks_;
+};
+
+// An open domain with details, and what it stands on.
+struct DetailedSurface {
+    gim_domain_info shape{};
+    DecoderPlane plane{};
+    uint32_t parts = 1;                  // texels for each step between samples of level 0
+    uint32_t slot = 0, coarse_slot = 0;  // samples from one tile to the next, here and at level 0
+    std::vector<float> displacements, positions;
+    AlignedBytes memory{0}, of_mesh{0};
+    const gim_domain* domain = nullptr;
+    gim_refined* mesh = nullptr;
+
+    // The texel of the plane at a sample.
+    size_t texel(uint32_t row, uint32_t column) const {
+        const size_t y = size_t{row / slot * coarse_slot} * parts + row % slot;
+        return y * plane.width + size_t{column / slot * coarse_slot} * parts + column % slot;
+    }
+};
+
+gim_status open(Decoder& decoder, const Bytes& file, const DecodedImage& image, DetailedSurface* d) {
+    const gim_info& info = decoder.info();
+    d->displacements.resize(3 * size_t{d->plane.width} * d->plane.height);
+    gim_status status = decoder.plane(d->plane, d->displacements);
+    if (status != GIM_OK) return status;
+    const uint32_t index = d->plane.image;
+    status = gim_read_detailed_domain_info(&info, file.data(), file.size(), index, 0, &d->shape);
+    if (status != GIM_OK) return status;
+    d->parts = (d->plane.width - 1) / (image.columns - 1);
+    // The tiles of a square share the samples of their sides.
+    const uint32_t apart = info.layout == GIM_LAYOUT_TILES ? 1 : 0;
+    d->slot = d->shape.intervals + apart;
+    d->coarse_slot = d->shape.intervals / d->parts + apart;
+    d->positions.resize(3 * size_t{d->shape.vertex_count});
+    d->memory = AlignedBytes(d->shape.domain_size);
+    AlignedBytes scratch(d->shape.scratch_size);
+    status = gim_open_detailed_domain(&info, file.data(), file.size(), index, 0, image.positions.data(),
+                                      d->displacements.data(), d->positions.data(), d->memory.get(), d->memory.size(),
+                                      scratch.get(), scratch.size(), &d->domain);
+    if (status != GIM_OK) return status;
+    const auto most = static_cast<uint32_t>(std::min<uint64_t>(d->shape.most_triangles, kMostTriangles));
+    d->of_mesh = AlignedBytes(gim_refined_size(d->domain, most));
+    return gim_begin_refined(d->domain, most, d->of_mesh.get(), d->of_mesh.size(), &d->mesh);
+}
+
+// Which vertices the mesh needs: all samples of level 0, and those whose absence would show in the details.
+struct Needs {
+    std::vector<bool> is_sample;     // per vertex
+    float error = 0;                 // what may be left out
+    std::array<float, 3> low, high;  // of a box around all that is displaced
+
+    static float need(void* user, uint32_t vertex, const float* position, float error, float radius) {
+        const auto& n = *static_cast<const Needs*>(user);
+        if (n.is_sample[vertex]) return 2;
+        for (size_t k = 0; k < 3; ++k) {
+            if (position[k] + radius < n.low[k] || position[k] - radius > n.high[k]) return 0;
+        }
+        return error / n.error;
+    }
+    void include(const float* position) {
+        for (size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], position[k]);
+            high[k] = std::max(high[k], position[k]);
+        }
+    }
+};
+
+// The vertex of each sample of the image, row by row; UINT32_MAX where there is none.
+std::vector<uint32_t> vertices_of_samples(const DetailedSurface& d) {
+    std::vector<float> halves(2 * size_t{d.shape.vertex_count}), laid(2 * size_t{d.shape.width} * d.shape.height);
+    for (uint32_t v = 0; v < d.shape.vertex_count; ++v) {  // floats hold halves of a number exactly
+        halves[2 * size_t{v}] = static_cast<float>(v >> 16);
+        halves[2 * size_t{v} + 1] = static_cast<float>(v & 0xFFFF);
+    }
+    gim_lay_out_samples(d.domain, halves.data(), 2, laid.data());
+    std::vector<uint32_t> vertices(laid.size() / 2, UINT32_MAX);
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        if (laid[2 * i] == laid[2 * i])
+            vertices[i] = static_cast<uint32_t>(laid[2 * i]) << 16 | static_cast<uint32_t>(laid[2 * i + 1]);
+    }
+    return vertices;
+}
+
+Needs needs_of(const DetailedSurface& d) {
+    Needs needs;
+    needs.is_sample.resize(d.shape.vertex_count, false);
+    needs.low.fill(std::numeric_limits<float>::infinity());
+    needs.high.fill(-std::numeric_limits<float>::infinity());
+    const std::vector<uint32_t> vertex_at = vertices_of_samples(d);
+    float largest = 0;
+    for (uint32_t y = 0; y < d.shape.height; ++y) {
+        for (uint32_t x = 0; x < d.shape.width; ++x) {
+            const uint32_t v = vertex_at[size_t{y} * d.shape.width + x];
+            if (v == UINT32_MAX) continue;
+            const uint32_t row = y % d.slot, column = x % d.slot;
+            needs.is_sample[v] = needs.is_sample[v] || (row % d.parts == 0 && column % d.parts == 0);
+            const float* by = &d.displacements[3 * d.texel(y, x)];
+            const float length = std::sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+            if (length > 0) needs.include(&d.positions[3 * size_t{v}]);
+            largest = std::max(largest, length);
+        }
+    }
+    needs.error = std::max(kErrorOfDepth * largest, std::numeric_limits<float>::min());
+    return needs;
+}
+
+void add_normal(const float* a, const float* b, const float* c, float* const (&sums)[3]) {
+    const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    for (float* sum : sums)
+        for (size_t k = 0; k < 3; ++k) sum[k] += n[k];
+}
+
+// The area-weighted normal of each vertex, unit length.
+std::vector<float> normals_of(const std::vector<float>& positions, std::span<const uint32_t> triangles) {
+    std::vector<float> normals(positions.size(), 0.0f);
+    const auto at = [](auto& of, uint32_t v) { return &of[3 * size_t{v}]; };
+    for (size_t i = 0; i < triangles.size(); i += 3) {
+        const uint32_t* t = &triangles[i];
+        add_normal(at(positions, t[0]), at(positions, t[1]), at(positions, t[2]),
+                   {at(normals, t[0]), at(normals, t[1]), at(normals, t[2])});
+    }
+    for (size_t i = 0; i < normals.size(); i += 3) {
+        const float length =
+            std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
+        for (size_t k = 0; k < 3; ++k) normals[i + k] = length > 0 ? normals[i + k] / length : 0;
+    }
+    return normals;
+}
+
+// Turns the refined mesh into the surface of the image.
+void take_surface(const DetailedSurface& d, DecodedImage* image) {
+    uint32_t count = 0;
+    const uint32_t* triangles = gim_refined_triangles(d.mesh, &count);
+    const std::vector<float> normals = normals_of(d.positions, {triangles, 3 * size_t{count}});
+    const size_t samples = size_t{d.shape.width} * d.shape.height;
+    DecodedImage out;
+    out.origin = image->origin;
+    out.normal_map = std::move(image->normal_map);
+    out.colors = std::move(image->colors);
+    out.columns = d.shape.width;
+    out.rows = d.shape.height;
+    out.grid.assign(3 * samples, std::numeric_limits<float>::quiet_NaN());
+    out.grid_normals.assign(3 * samples, 0.0f);
+    out.grid_texcoords.assign(2 * samples, 0.0f);
+    std::vector<uint32_t> number(d.shape.vertex_count, UINT32_MAX);
+    const uint32_t columns = d.shape.width / d.slot;
+    for (uint32_t h = 0; h < 3 * count; ++h) {
+        gim_half_edge edge;
+        (void)gim_read_half_edge(d.mesh, h, &edge);
+        const uint32_t row = edge.tile / columns * d.slot + edge.start[0];
+        const uint32_t column = edge.tile % columns * d.slot + edge.start[1];
+        const size_t sample = size_t{row} * d.shape.width + column, texel = d.texel(row, column), v = edge.vertex;
+        const float uv[2] = {static_cast<float>(texel % d.plane.width) / static_cast<float>(d.plane.width - 1),
+                             static_cast<float>(texel / d.plane.width) / static_cast<float>(d.plane.height - 1)};
+        std::copy_n(&d.positions[3 * v], 3, &out.grid[3 * sample]);
+        std::copy_n(&normals[3 * v], 3, &out.grid_normals[3 * sample]);
+        std::copy_n(uv, 2, &out.grid_texcoords[2 * sample]);
+        if (number[v] == UINT32_MAX) {
+            number[v] = static_cast<uint32_t>(out.positions.size() / 3);
+            out.positions.insert(out.positions.end(), &d.positions[3 * v], &d.positions[3 * v] + 3);
+            out.normals.insert(out.normals.end(), &normals[3 * v], &normals[3 * v] + 3);
+            out.texcoords.insert(out.texcoords.end(), uv, uv + 2);
+        }
+        out.grid_triangles.push_back(static_cast<uint32_t>(sample));
+        out.triangles.push_back(number[v]);
+    }
+    *image = std::move(out);
+}
+
+}  // namespace
+
+gim_status add_details(Decoder& decoder, const Bytes& file, uint32_t index, DecodedImage* image) {
+    DetailedSurface d;
+    gim_status status = decoder.read_plane(index, GIM_PLANE_DISPLACEMENTS, 0, &d.plane);
+    if (status == GIM_NO_SUCH_PLANE || decoder.info().layout == GIM_LAYOUT_MCGIM) return GIM_OK;
+    if (status != GIM_OK) return status;
+    status = open(decoder, file, *image, &d);
+    if (status != GIM_OK) return status;
+    Needs needs = needs_of(d);
+    gim_rule rule{};
+    rule.need = Needs::need;
+    rule.user = &needs;
+    status = gim_refine(d.mesh, &rule, 0, nullptr);
+    if (status == GIM_OK) take_surface(d, image);
+    return status;
+}
+
+}  // namespace gim

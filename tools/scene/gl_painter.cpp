@@ -1,0 +1,147 @@
+// Draws scenes by the compute shader and one indirect draw.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tools/gpu/camera.h"
+#include "tools/gpu/egl_context.h"
+#include "tools/gpu/gl_expand.h"
+#include "tools/gpu/gl_frame.h"
+#include "tools/gpu/gl_surface.h"
+#include "tools/gpu/gl_tessellate.h"
+#include "tools/gpu/surface_data.h"
+#include "tools/scene/scene_painter.h"
+#include "tools/scene/scene_run.h"
+
+namespace gim {
+namespace {
+
+constexpr uint32_t kFirstCapacity = 1u << 20;  // triangles
+constexpr std::array<float, 4> kSky = {0.16f, 0.18f, 0.22f, 1};
+
+class GlPainter final : public ScenePainter {
+  public:
+    static Result<std::unique_ptr<ScenePainter>> create(const Scene& scene, const std::vector<SceneSurface>& surfaces) {
+        Result<EglContext> context = EglContext::create();
+        if (!context.ok()) return context.error();
+        std::vector<SurfaceData> data;
+        for (const SceneSurface& surface : surfaces) {
+            Result<SurfaceData> read = read_surface_data(surface.info(), surface.file(), 0, 0);
+            if (!read.ok()) return read.error();
+            data.push_back(std::move(read.value()));
+        }
+        Result<GlExpand> expand = GlExpand::create(kFirstCapacity);
+        if (!expand.ok()) return expand.error();
+        Result<GlFrame> frame = GlFrame::create(scene.width, scene.height);
+        if (!frame.ok()) return frame.error();
+        return std::unique_ptr<ScenePainter>(new GlPainter(scene, std::move(context.value()), join_surfaces(data),
+                                                           std::move(expand.value()), std::move(frame.value()),
+                                                           surfaces));
+    }
+
+    std::string renderer() const override { return context_.renderer(); }
+
+    void upload(const SceneLod& lod, LodWay way, const CameraKey& camera, const FramePatches& patches) override {
+        InstancedPatches list;
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            const std::span<const gim_patch> of_instance(patches.patches.data() + patches.first[i],
+                                                         patches.first[i + 1] - patches.first[i]);
+            add_patches(of_instance, i, kTessellatorEdges, 0, &list);
+        }
+        surface_.set_patches(list);
+        surface_.set_instances(instances(lod, way, camera));
+        surface_.set_view(view_of(camera_of(camera), scene_.pixel_error));
+        glFinish();
+    }
+
+    Result<uint64_t> draw() override {
+        expand_.expand(surface_);
+        if (const uint32_t needed = expand_.needed(); needed > expand_.capacity()) {
+            expand_.set_capacity(needed + needed / 4);
+            expand_.expand(surface_);
+        }
+        frame_.begin(kSky);
+        expand_.draw(surface_);
+        glFinish();
+        const Result<void> checked = check_gl("drawing a frame");
+        if (!checked.ok()) return checked.error();
+        return uint64_t{expand_.needed()};
+    }
+
+    std::vector<uint8_t> picture() const override {
+        const FramePixels pixels = frame_.read();
+        std::vector<uint8_t> rgb;
+        rgb.reserve(pixels.rgba.size() / 4 * 3);
+        for (size_t i = 0; i < pixels.rgba.size(); i += 4)
+            rgb.insert(rgb.end(), pixels.rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                       pixels.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+        return rgb;
+    }
+
+  private:
+    GlPainter(const Scene& scene, EglContext context, const SurfaceStore& store, GlExpand expand, GlFrame frame,
+              const std::vector<SceneSurface>& surfaces)
+        : scene_(scene),
+          surfaces_(surfaces),
+          context_(std::move(context)),
+          surface_(store),
+          expand_(std::move(expand)),
+          frame_(std::move(frame)) {}
+
+    std::vector<ShaderInstance> instances(const SceneLod& lod, LodWay way, const CameraKey& camera) const {
+        std::vector<ShaderInstance> list;
+        for (size_t i = 0; i < scene_.instances.size(); ++i) {
+            const Placement& p = lod.placement(i);
+            ShaderInstance instance;
+            instance.domain = scene_.instances[i].mesh;
+            instance.transform = p.matrix();
+            const double radius = p.scale * surfaces_[instance.domain].radius();
+            for (size_t k = 0; k < 3; ++k) instance.ball[k] = static_cast<float>(p.position[k]);
+            instance.ball[3] = static_cast<float>(radius);
+            if (scene_.gpu_refines && way == LodWay::kAdaptive) {
+                const double distance = std::hypot(camera.eye[0] - p.position[0], camera.eye[1] - p.position[1],
+                                                   camera.eye[2] - p.position[2]);
+                instance.error = static_cast<float>(lod.pixel_error() * std::max(distance - radius, 1e-3 * radius) /
+                                                    lod.pixels_per_unit());
+            }
+            list.push_back(instance);
+        }
+        return list;
+    }
+    Camera camera_of(const CameraKey& key) const {
+        Camera camera;
+        camera.eye = key.eye;
+        camera.target = key.target;
+        camera.up = {0, 0, 1};
+        camera.field_of_view = scene_.field_of_view * std::numbers::pi / 180;
+        camera.width = scene_.width;
+        camera.height = scene_.height;
+        double farthest = 0, size = 1e300;
+        for (const SceneInstance& i : scene_.instances) {
+            farthest = std::max(farthest, i.size + std::hypot(i.position[0] - key.eye[0], i.position[1] - key.eye[1],
+                                                              i.position[2] - key.eye[2]));
+            size = std::min(size, i.size);
+        }
+        camera.nearest = std::max(0.02 * size, farthest * 1e-5);
+        camera.farthest = std::max(farthest, 2 * camera.nearest);
+        return camera;
+    }
+
+    const Scene& scene_;
+    const std::vector<SceneSurface>& surfaces_;
+    EglContext context_;  // goes last
+    GlSurface surface_;
+    GlExpand expand_;
+    GlFrame frame_;
+};
+
+}  // namespace
+
+bool can_draw_scenes() { return true; }
+
+Result<std::unique_ptr<ScenePainter>> make_painter(const Scene& scene, const std::vector<SceneSurface>& surfaces) {
+    return GlPainter::create(scene, surfaces);
+}
+
+}  // namespace gim

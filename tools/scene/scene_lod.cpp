@@ -1,0 +1,145 @@
+#include "tools/scene/scene_lod.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace gim {
+namespace {
+
+constexpr double kLeftToGpu = 4;  // times the error: one halving of cells makes up for it
+constexpr double kOverBudget = 1.1, kUnderBudget = 0.95, kRoom = 0.85;
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+}  // namespace
+
+std::array<double, 3> Placement::to_mesh(const std::array<double, 3>& point) const {
+    const double x = (point[0] - position[0]) / scale, y = (point[1] - position[1]) / scale,
+                 z = (point[2] - position[2]) / scale;
+    return {middle[0] + cosine * x + sine * y, middle[1] - sine * x + cosine * y, middle[2] + z};
+}
+
+std::array<float, 16> Placement::matrix() const {
+    const double a = scale * cosine, b = scale * sine;
+    const double x = position[0] - a * middle[0] + b * middle[1], y = position[1] - b * middle[0] - a * middle[1];
+    const double z = position[2] - scale * middle[2];
+    std::array<float, 16> m = {};
+    m[0] = m[5] = static_cast<float>(a);
+    m[1] = static_cast<float>(b);
+    m[4] = static_cast<float>(-b);
+    m[10] = static_cast<float>(scale);
+    m[12] = static_cast<float>(x);
+    m[13] = static_cast<float>(y);
+    m[14] = static_cast<float>(z);
+    m[15] = 1;
+    return m;
+}
+
+Placement placement_of(const SceneInstance& instance, const SceneSurface& surface) {
+    Placement p;
+    p.scale = instance.size / std::max(surface.longest_side(), 1e-300);
+    p.cosine = std::cos(radians(instance.turn));
+    p.sine = std::sin(radians(instance.turn));
+    p.middle = surface.middle();
+    p.position = instance.position;
+    return p;
+}
+
+SceneLod::SceneLod(const Scene& scene, const std::vector<SceneSurface>& surfaces)
+    : scene_(scene),
+      surfaces_(surfaces),
+      pixels_per_unit_(scene.height / (2 * std::tan(radians(scene.field_of_view) / 2))),
+      pixel_error_(scene.pixel_error * (scene.gpu_refines ? kLeftToGpu : 1)) {
+    for (const SceneInstance& instance : scene.instances)
+        placements_.push_back(placement_of(instance, surfaces[instance.mesh]));
+}
+
+Result<std::unique_ptr<SceneLod>> SceneLod::create(const Scene& scene, const std::vector<SceneSurface>& surfaces) {
+    std::unique_ptr<SceneLod> lod(new SceneLod(scene, surfaces));
+    const Result<void> begun = lod->begin();
+    if (!begun.ok()) return begun.error();
+    return lod;
+}
+
+Result<void> SceneLod::begin() {
+    for (size_t i = 0; i < scene_.instances.size(); ++i) {
+        const SceneSurface& surface = surfaces_[scene_.instances[i].mesh];
+        const auto room =
+            static_cast<uint32_t>(std::min<uint64_t>(scene_.instance_triangles, surface.shape().most_triangles));
+        const uint64_t size = gim_refined_size(surface.domain(), room);
+        gim_refined* mesh = nullptr;
+        if (size > 0) {
+            memory_.emplace_back(size);
+            bytes_ += size;
+        }
+        if (size == 0 ||
+            gim_begin_refined(surface.domain(), room, memory_.back().get(), memory_.back().size(), &mesh) != GIM_OK)
+            return Error{Stage::kInput, "scene: instance " + std::to_string(i) +
+                                            " has more triangles in its base than instance_triangles allows"};
+        meshes_.push_back(mesh);
+    }
+    return {};
+}
+
+double SceneLod::distance(size_t instance, const CameraKey& camera) const {
+    const Placement& p = placements_[instance];
+    const double radius = p.scale * surfaces_[scene_.instances[instance].mesh].radius();
+    const double to_middle =
+        std::hypot(camera.eye[0] - p.position[0], camera.eye[1] - p.position[1], camera.eye[2] - p.position[2]);
+    return std::max(to_middle - radius, 1e-6 * radius);
+}
+
+void SceneLod::take_level(size_t instance, const SceneSurface::DiscreteLevel& level, FramePatches* out) {
+    out->patches.insert(out->patches.end(), level.patches.begin(), level.patches.end());
+    out->triangles += level.triangles;
+    out->first[instance + 1] = static_cast<uint32_t>(out->patches.size());
+}
+
+void SceneLod::refine(const CameraKey& camera, FramePatches* out) {
+    for (size_t i = 0; i < meshes_.size(); ++i) {
+        const std::array<double, 3> eye = placements_[i].to_mesh(camera.eye);
+        gim_rule rule{};
+        rule.pixel_error = static_cast<float>(pixel_error_);
+        // Errors and distances grow alike with the scale, so pixels stay pixels.
+        rule.pixels_per_unit = static_cast<float>(pixels_per_unit_);
+        for (size_t k = 0; k < 3; ++k) rule.eye[k] = static_cast<float>(eye[k]);
+        (void)gim_refine(meshes_[i], &rule, 0, nullptr);
+        uint32_t triangles = 0, patches = 0;
+        (void)gim_refined_triangles(meshes_[i], &triangles);
+        out->triangles += triangles;
+        if (room_.size() < 2 * size_t{triangles}) room_.resize(2 * size_t{triangles});
+        (void)gim_read_patches(meshes_[i], room_.data(), static_cast<uint32_t>(room_.size()), &patches);
+        out->patches.insert(out->patches.end(), room_.begin(), room_.begin() + patches);
+        out->first[i + 1] = static_cast<uint32_t>(out->patches.size());
+    }
+    out->largest_error = pixel_error_;
+    // The budget of the next frame: all instances err alike.
+    const double wanted = scene_.pixel_error * (scene_.gpu_refines ? kLeftToGpu : 1);
+    const double share = double(out->triangles) / scene_.most_triangles;
+    if (share > 1)
+        pixel_error_ *= std::max(kOverBudget, share);
+    else if (share < kRoom)
+        pixel_error_ = std::max(wanted, pixel_error_ * kUnderBudget);
+}
+
+void SceneLod::choose(LodWay way, const CameraKey& camera, FramePatches* out) {
+    out->patches.clear();
+    out->first.assign(meshes_.size() + 1, 0);
+    out->triangles = 0;
+    out->largest_error = 0;
+    if (way == LodWay::kAdaptive) return refine(camera, out);
+    for (size_t i = 0; i < meshes_.size(); ++i) {
+        const SceneSurface& surface = surfaces_[scene_.instances[i].mesh];
+        const double pixels = pixels_per_unit_ * placements_[i].scale / distance(i, camera);
+        size_t level = 0;
+        while (way == LodWay::kDiscrete && level + 1 < surface.levels().size() &&
+               surface.levels()[level + 1].error * pixels <= scene_.pixel_error)
+            ++level;
+        out->largest_error = std::max(out->largest_error, surface.levels()[level].error * pixels);
+        take_level(i, surface.levels()[level], out);
+    }
+}
+
+}  // namespace gim
