@@ -30,31 +30,28 @@ std::vector<double> each(const std::vector<FrameFigures>& frames, const F& f) {
     return values;
 }
 
-json milliseconds(const std::vector<double>& values) {
-    return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}};
+double most(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
+
+json milliseconds(const std::vector<double>& values) { return {{"median", median(values)}, {"worst", most(values)}}; }
 
 json describe(const std::vector<FrameFigures>& frames) {
     const auto triangles = each(frames, [](const FrameFigures& f) { return f.triangles; });
     const auto patches = each(frames, [](const FrameFigures& f) { return f.patches; });
-    const double sum = std::accumulate(triangles.begin(), triangles.end(), 0.0);
     constexpr double kBytesOfPatch = 8, kBytesOfTriangle = 12;
-    return {{"refine_ms", milliseconds(each(frames, [](const FrameFigures& f) { return f.refine; }))},
-            {"upload_ms", milliseconds(each(frames, [](const FrameFigures& f) { return f.upload; }))},
-            {"draw_ms", milliseconds(each(frames, [](const FrameFigures& f) { return f.draw; }))},
-            {"frame_ms", milliseconds(each(frames, [](const FrameFigures& f) { return f.total(); }))},
-            {"triangles",
-             {{"mean", sum / double(frames.size())}, {"most", *std::max_element(triangles.begin(), triangles.end())}}},
-            {"drawn_most", *std::max_element(frames.begin(), frames.end(),
-                                             [](const auto& a, const auto& b) { return a.drawn < b.drawn; })
-                                ->drawn},
-            {"patches_mean", std::accumulate(patches.begin(), patches.end(), 0.0) / double(frames.size())},
-            {"patch_bytes_over_index_bytes", std::accumulate(patches.begin(), patches.end(), 0.0) * kBytesOfPatch /
-                                                 std::max(sum * kBytesOfTriangle, 1.0)},
-            {"most_pixel_error", [&] {
-                 const auto errors = each(frames, [](const FrameFigures& f) { return f.pixel_error; });
-                 return *std::max_element(errors.begin(), errors.end());
-             }()}};
+    json out;
+    out["refine_ms"] = milliseconds(each(frames, [](const FrameFigures& f) { return f.refine; }));
+    out["upload_ms"] = milliseconds(each(frames, [](const FrameFigures& f) { return f.upload; }));
+    out["draw_ms"] = milliseconds(each(frames, [](const FrameFigures& f) { return f.draw; }));
+    out["frame_ms"] = milliseconds(each(frames, [](const FrameFigures& f) { return f.total(); }));
+    out["triangles"] = {{"mean", mean(triangles)}, {"most", most(triangles)}};
+    out["drawn"] = {{"mean", mean(each(frames, [](const FrameFigures& f) { return f.drawn; }))}};
+    out["patches"] = {{"mean", mean(patches)}, {"most", most(patches)}};
+    out["patch_bytes_over_index_bytes"] = mean(patches) * kBytesOfPatch / (mean(triangles) * kBytesOfTriangle);
+    out["most_pixel_error"] = most(each(frames, [](const FrameFigures& f) { return f.pixel_error; }));
+    return out;
 }
 
 json describe(const Scene& scene, const SceneFigures& figures) {

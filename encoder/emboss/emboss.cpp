@@ -20,7 +20,7 @@ namespace gim {
 namespace {
 
 constexpr uint64_t kMostTexels = uint64_t{1} << 26;  // what every reader should take
-constexpr double kStepsInDepth = 64;                 // of the quantizer
+constexpr double kStepsInDepth = 32;                 // of the quantizer
 constexpr double kFarthest = 0.75;  // of the map, in diagonals of the picture; half of one would do on a plane
 
 Error wrong(const std::string& message) { return {Stage::kInput, message}; }

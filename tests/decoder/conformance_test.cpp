@@ -36,6 +36,7 @@ TEST(Conformance, ValidFilesDecodeToTheExpectedBits) {
         EXPECT_EQ(to_bytes(decoded.triangles), read_bytes(fs::path(path).replace_extension(".tri")));
         EXPECT_EQ(to_bytes(decoded.vertices), read_bytes(fs::path(path).replace_extension(".vtx")));
         EXPECT_EQ(to_bytes(decoded.planes), read_bytes(fs::path(path).replace_extension(".pln")));
+        EXPECT_EQ(to_bytes(decoded.details), read_bytes(fs::path(path).replace_extension(".dsp")));
     }
 }
 
@@ -73,6 +74,7 @@ TEST(Conformance, NoDamagedByteChangesTheSurfaceUnnoticed) {
                 ASSERT_EQ(to_bytes(damaged.samples), to_bytes(whole.samples)) << "byte " << i;
                 ASSERT_EQ(damaged.triangles, whole.triangles) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.planes), to_bytes(whole.planes)) << "byte " << i;
+                ASSERT_EQ(to_bytes(damaged.details), to_bytes(whole.details)) << "byte " << i;
             }
             file[i] = kept;
         }

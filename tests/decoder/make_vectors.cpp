@@ -264,6 +264,7 @@ class Writer {
         write_bytes(folder_ / "valid" / (name + ".tri"), to_bytes(decoded.triangles));
         write_bytes(folder_ / "valid" / (name + ".vtx"), to_bytes(decoded.vertices));
         if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
+        if (!decoded.details.empty()) write_bytes(folder_ / "valid" / (name + ".dsp"), to_bytes(decoded.details));
     }
     void invalid(const std::string& name, const Bytes& file) {
         const gim_status status = decode_all(file).status;
@@ -346,6 +347,14 @@ void write_valid(Writer& out) {
     planes.planes = {{ChunkType::kColors, plane({17, 5}, 20, -100)}};
     out.valid("planes-two-images", encode({hill(9, tube(), 0, 16), hill(5, open_square(), 0, 17)}, planes));
 
+    planes = lossy(12, 9, 30);
+    planes.planes = {{ChunkType::kDisplacements, plane({33}, 4, 40)}};
+    out.valid("displaced-sphere-17", encode({hill(17, folded_sides(), 0, 15)}, planes));
+    // One image whose plane is too coarse to be details, and one whose plane is as fine as its samples.
+    planes = lossy(10, 5, 30);
+    planes.planes = {{ChunkType::kDisplacements, plane({5, 5}, 20, -100)}};
+    out.valid("displaced-two-images", encode({hill(9, tube(), 0, 16), hill(5, open_square(), 0, 17)}, planes));
+
     CodingParameters text = lossless(8, 3);
     text.text = "a short text";
     out.valid("text-plain", encode({hill(5, open_square(), 0, 1)}, text));
@@ -427,6 +436,8 @@ void write_valid_tiles(Writer& out) {
     const TileImage open = tiles(strip(3, 1), 2, 9, 11);
     planes.planes = {{ChunkType::kColors, tile_plane(open, 3, 4, 60)}};
     out.valid("tiles-strip-planes", encode_tiles(open, planes));
+    planes.planes = {{ChunkType::kDisplacements, tile_plane(small, 2, 4, 30)}};
+    out.valid("tiles-genus-2-displaced", encode_tiles(small, planes));
 }
 
 void write_invalid_tiles(Writer& out) {
@@ -621,6 +632,10 @@ void write_invalid_planes(Writer& out) {
         coarse.planes = {{ChunkType::kNormals, plane({9}, 48, 200)}};
         return encode({hill(33, s, 0, 14)}, coarse);
     }());
+    out.invalid("malformed.plane-displacements-twice", with_parts(file, [](Parts& p) {
+                    insert_chunk(&p, p.chunks.size(), 5, true, p.payloads.back());
+                    insert_chunk(&p, p.chunks.size(), 5, true, p.payloads.back());
+                }));
     out.invalid("checksum.plane", [&] {
         Bytes b = file;
         b.back() ^= 1;

@@ -11,16 +11,18 @@
 #include <vector>
 
 #include "gim/decoder.hpp"
+#include "gim/refine.h"
 
 namespace gim::test {
 
-// All levels that can be closed of all images, in order, then the planes. Stops at the first failure.
+// All levels that can be closed of all images, in order, then the planes, then details. Stops at the first failure.
 struct Decoded {
     gim_status status = GIM_OK;
     std::vector<float> samples;       // of gim_decode_grid
     std::vector<uint32_t> triangles;  // of gim_decode_mesh
     std::vector<float> vertices;      // normals, then texture coordinates, of gim_decode_mesh
     std::vector<float> planes;        // of gim_decode_plane
+    std::vector<float> details;       // of gim_open_detailed_domain
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
 
@@ -81,6 +83,38 @@ inline gim_status decode_plane(const gim_info& info, const std::vector<uint8_t>&
     return GIM_OK;
 }
 
+// The positions of one image with its displacements, at all levels of these that are fine enough.
+inline gim_status decode_details(const gim_info& info, const std::vector<uint8_t>& file, uint32_t image, Decoded* out) {
+    gim_level_info level;
+    gim_status s = gim_read_level_info(&info, file.data(), file.size(), image, 0, &level);
+    if (s != GIM_OK) return s;
+    std::vector<float> positions(size_t{level.vertex_count} * 3);
+    Scratch of_level(level.scratch_size);
+    s = gim_decode_mesh(&info, file.data(), file.size(), image, 0, positions.data(), nullptr, nullptr, nullptr,
+                        of_level.data(), of_level.size());
+    if (s != GIM_OK) return s;
+    for (uint32_t l = 0;; ++l) {
+        gim_domain_info shape;
+        s = gim_read_detailed_domain_info(&info, file.data(), file.size(), image, l, &shape);
+        if (s == GIM_NO_SUCH_PLANE || s == GIM_NO_SUCH_LEVEL) return GIM_OK;
+        gim_plane_info p;
+        if (s == GIM_OK)
+            s = gim_read_plane_info(&info, file.data(), file.size(), image, GIM_PLANE_DISPLACEMENTS, l, &p);
+        if (s != GIM_OK) return s;
+        std::vector<float> displacements(size_t{p.width} * p.height * 3), detailed(size_t{shape.vertex_count} * 3);
+        Scratch of_plane(p.scratch_size), memory(shape.domain_size), scratch(shape.scratch_size);
+        s = gim_decode_plane(&info, file.data(), file.size(), image, GIM_PLANE_DISPLACEMENTS, l, displacements.data(),
+                             of_plane.data(), of_plane.size());
+        if (s != GIM_OK) return s;
+        const gim_domain* domain = nullptr;
+        s = gim_open_detailed_domain(&info, file.data(), file.size(), image, l, positions.data(), displacements.data(),
+                                     detailed.data(), memory.data(), memory.size(), scratch.data(), scratch.size(),
+                                     &domain);
+        if (s != GIM_OK) return s;
+        out->details.insert(out->details.end(), detailed.begin(), detailed.end());
+    }
+}
+
 inline Decoded decode_all(const std::vector<uint8_t>& file) {
     Decoded out;
     gim_info info;
@@ -94,6 +128,9 @@ inline Decoded decode_all(const std::vector<uint8_t>& file) {
         for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
             out.status = decode_plane(info, file, image, kind, &out);
     }
+    for (uint32_t image = 0; out.status == GIM_OK && info.layout != GIM_LAYOUT_MCGIM && image < info.image_count;
+         ++image)
+        out.status = decode_details(info, file, image, &out);
     return out;
 }
 
