@@ -15,7 +15,7 @@ gim_status gim_read_cluster_sizes(const gim_domain* domain, uint32_t side, gim_c
     const Status status = ClusterBuilder::read_sizes(domain->domain.shape(), side, sizes);
     if (status != Status::kOk) return static_cast<gim_status>(status);
     Arena arena(nullptr);
-    (void)ClusterBuilder(&domain->domain, side, sizes->cluster_count, &arena);
+    (void)ClusterBuilder(&domain->domain, side, &arena);
     sizes->scratch_size = arena.used();
     return GIM_OK;
 }
@@ -28,7 +28,7 @@ gim_status gim_decode_clusters(const gim_domain* domain, uint32_t side, gim_clus
     if (Status s = check_scratch({scratch, scratch_size}, sizes.scratch_size); s != Status::kOk)
         return static_cast<gim_status>(s);
     Arena arena(scratch);
-    ClusterBuilder(&domain->domain, side, sizes.cluster_count, &arena).run({clusters, vertices, triangles}, tree);
+    ClusterBuilder(&domain->domain, side, &arena).run({clusters, vertices, triangles}, tree);
     return GIM_OK;
 }
 

@@ -20,15 +20,23 @@ Ball ball_around(const QuadDomain& domain, std::span<const uint32_t> vertices);
 // Enlarges the radius so that the other ball lies within.
 void include_ball(const Ball& other, Ball* ball);
 
-// gim_cluster says how cones are tested. The default culls nothing.
+// gim_cluster says how cones are tested.
 struct Cone {
     float apex[3] = {}, axis[3] = {}, cutoff = 1;
 };
+
+Cone no_cone(const Ball& around);
 
 // Unit normal of a triangle, in binary64. kNone: it has no area, so it is seen from nowhere. kUnsure: it is so thin that
 // rounding decides where it looks.
 enum class Facing { kFine, kNone, kUnsure };
 Facing face_normal(const QuadDomain& domain, const uint32_t* vertices, double* normal);
+
+struct Normal {
+    float x[3];
+};
+// About the axis of the narrowest cone that holds them. Normals of length 0 count as if they were any.
+void middle_of_normals(std::span<const Normal> normals, float* axis);
 
 // The narrowest cone around `axis` that all triangles have a part in. First begin, then add all, then finish.
 class ConeFit {

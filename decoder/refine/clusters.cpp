@@ -36,10 +36,10 @@ uint32_t even_bits(uint32_t x) {
 
 }  // namespace
 
-ClusterBuilder::ClusterBuilder(const QuadDomain* domain, uint32_t side, uint32_t most_clusters, Arena* arena)
+ClusterBuilder::ClusterBuilder(const QuadDomain* domain, uint32_t side, Arena* arena)
     : domain_(domain), side_(side), groups_(domain, exponent_of(side), arena) {
     local_ = arena->take<uint8_t>(domain->shape().vertices);
-    normals_ = arena->take<NormalSum>(most_clusters);
+    normals_ = arena->take<Normal>(domain->shape().most_triangles());
 }
 
 Status ClusterBuilder::read_sizes(const DomainShape& shape, uint32_t side, gim_cluster_sizes* sizes) {
@@ -129,7 +129,7 @@ void ClusterBuilder::fill(uint32_t depth, uint32_t place, gim_cluster* cluster) 
                        column = even_bits(block) * side_ * plan.stride;
         const uint32_t end = groups_.first_tile(plan.level, group + 1);
         for (uint32_t t = groups_.first_tile(plan.level, group); t < end; ++t)
-            add_cells({groups_.tile(t), row, column, plan.stride, false}, std::min(side_, plan.cells), cluster);
+            add_square({groups_.tile(t), row, column, plan.stride, false}, std::min(side_, plan.cells), cluster);
     }
     for (uint32_t c = 0; c < cluster->child_count; ++c)
         out_.clusters[cluster->first_child + c].parent_error = cluster->error;
@@ -137,25 +137,41 @@ void ClusterBuilder::fill(uint32_t depth, uint32_t place, gim_cluster* cluster) 
     tree_->triangle_count += cluster->triangle_count;
 }
 
-// Row after row: a cache of a few more vertices than a row has keeps the row above.
-void ClusterBuilder::add_cells(const CoarseCell& first, uint32_t cells, gim_cluster* cluster) {
-    CoarseCell cell = first;
-    for (uint32_t r = 0; r < cells; ++r, cell.row += cell.size) {
-        cell.column = first.column;
-        for (uint32_t c = 0; c < cells; ++c, cell.column += cell.size) {
-            cell.is_main = is_main(cell);
-            const uint32_t below = cell.row + cell.size, beside = cell.column + cell.size;
-            uint32_t vertices[6];
-            write_cell(domain_->vertex_at(cell.tile, cell.row, cell.column),
-                       domain_->vertex_at(cell.tile, cell.row, beside),
-                       domain_->vertex_at(cell.tile, below, cell.column), domain_->vertex_at(cell.tile, below, beside),
-                       cell.is_main, vertices);
-            uint8_t* const local = out_.triangles + 3 * (size_t{cluster->first_triangle} + cluster->triangle_count);
-            for (int i = 0; i < 6; ++i) local[i] = local_number(vertices[i], cluster);
-            cluster->triangle_count += 2;
-            cluster->error = std::max(cluster->error, cell_error(*domain_, cell));
+// Row after row, so that a cache that holds a row and a little more keeps the row above. The vertices of the first row come
+// interleaved with those of the second one, so 16 are too few for rows of 8; the first two rows come in two parts.
+void ClusterBuilder::add_square(const CoarseCell& first, uint32_t cells, gim_cluster* cluster) {
+    constexpr uint32_t kPart = 6;
+    if (cells > kPart) {
+        add_cells(first, {0, 2, 0, kPart}, cluster);
+        add_cells(first, {0, 2, kPart, cells}, cluster);
+        add_cells(first, {2, cells, 0, cells}, cluster);
+    } else {
+        add_cells(first, {0, cells, 0, cells}, cluster);
+    }
+}
+
+void ClusterBuilder::add_cells(const CoarseCell& first, const Part& part, gim_cluster* cluster) {
+    for (uint32_t r = part.row; r < part.row_end; ++r) {
+        for (uint32_t c = part.column; c < part.column_end; ++c) {
+            CoarseCell cell = first;
+            cell.row += r * cell.size;
+            cell.column += c * cell.size;
+            add_cell(cell, cluster);
         }
     }
+}
+
+void ClusterBuilder::add_cell(CoarseCell cell, gim_cluster* cluster) {
+    const uint32_t below = cell.row + cell.size, beside = cell.column + cell.size;
+    cell.is_main = is_main(cell);
+    uint32_t vertices[6];
+    write_cell(domain_->vertex_at(cell.tile, cell.row, cell.column), domain_->vertex_at(cell.tile, cell.row, beside),
+               domain_->vertex_at(cell.tile, below, cell.column), domain_->vertex_at(cell.tile, below, beside),
+               cell.is_main, vertices);
+    uint8_t* const local = out_.triangles + 3 * (size_t{cluster->first_triangle} + cluster->triangle_count);
+    for (int i = 0; i < 6; ++i) local[i] = local_number(vertices[i], cluster);
+    cluster->triangle_count += 2;
+    cluster->error = std::max(cluster->error, cell_error(*domain_, cell));
 }
 
 uint8_t ClusterBuilder::local_number(uint32_t vertex, gim_cluster* cluster) {
@@ -183,25 +199,16 @@ bool ClusterBuilder::is_main(const CoarseCell& cell) const {
 
 // Ball and cone, from all triangles of depth 0 below, which follow each other.
 void ClusterBuilder::bound(uint32_t depth, uint32_t place, gim_cluster* cluster) {
-    const uint32_t begin = first_leaf(cluster);
-    const uint32_t end =
-        place + 1 < tree_->depths[depth].cluster_count ? first_leaf(cluster + 1) : tree_->depths[0].cluster_count;
-    const uint32_t first = out_.clusters[begin].first_vertex;
-    const gim_cluster& last = out_.clusters[end - 1];
+    const Leaves leaves = leaves_of(depth, place);
+    const uint32_t first = out_.clusters[leaves.begin].first_vertex;
+    const gim_cluster& last = out_.clusters[leaves.end - 1];
     Ball ball = ball_around(*domain_, {out_.vertices + first, last.first_vertex + last.vertex_count - first});
-
-    NormalSum& normals = normals_[cluster - out_.clusters];
-    normals = {};
-    if (depth == 0) sum_normals(*cluster, &normals);
-    for (uint32_t c = cluster->first_child; c < cluster->first_child + cluster->child_count; ++c) {
-        const gim_cluster& child = out_.clusters[c];
+    for (uint32_t c = 0; c < cluster->child_count; ++c) {
+        const gim_cluster& child = out_.clusters[cluster->first_child + c];
         include_ball({{child.center[0], child.center[1], child.center[2]}, child.radius}, &ball);
-        for (int k = 0; k < 3; ++k) normals.x[k] += normals_[c].x[k];
     }
-    ConeFit fit(normals.x, ball);
-    bool is_there = add_to_cone(*cluster, &fit);
-    for (uint32_t leaf = begin; leaf < end && is_there; ++leaf) is_there = add_to_cone(out_.clusters[leaf], &fit);
-    const Cone cone = fit.finish();
+    if (depth == 0) list_normals(*cluster, normals_ + cluster->first_triangle);
+    const Cone cone = cone_of(*cluster, leaves, ball);
 
     std::copy_n(ball.center, 3, cluster->center);
     cluster->radius = ball.radius;
@@ -210,14 +217,37 @@ void ClusterBuilder::bound(uint32_t depth, uint32_t place, gim_cluster* cluster)
     cluster->cone_cutoff = cone.cutoff;
 }
 
-void ClusterBuilder::sum_normals(const gim_cluster& cluster, NormalSum* sum) const {
+Cone ClusterBuilder::cone_of(const gim_cluster& cluster, const Leaves& leaves, const Ball& ball) const {
+    float axis[3] = {};
+    bool is_there = may_have_cone(cluster);
+    if (is_there) {
+        const gim_cluster& last = out_.clusters[leaves.end - 1];
+        const uint32_t first = out_.clusters[leaves.begin].first_triangle;
+        middle_of_normals({normals_ + first, last.first_triangle + last.triangle_count - first}, axis);
+    }
+    ConeFit fit(axis, ball);
+    is_there = is_there && add_to_cone(cluster, &fit);
+    for (uint32_t leaf = leaves.begin; leaf < leaves.end && is_there; ++leaf)
+        is_there = add_to_cone(out_.clusters[leaf], &fit);
+    return is_there ? fit.finish() : no_cone(ball);
+}
+
+// What is too wide for a cone below is too wide here.
+bool ClusterBuilder::may_have_cone(const gim_cluster& cluster) const {
+    for (uint32_t c = 0; c < cluster.child_count; ++c) {
+        if (out_.clusters[cluster.first_child + c].cone_cutoff == 1) return false;
+    }
+    return true;
+}
+
+void ClusterBuilder::list_normals(const gim_cluster& cluster, Normal* normals) const {
     const uint32_t* const list = out_.vertices + cluster.first_vertex;
     const uint8_t* local = out_.triangles + 3 * size_t{cluster.first_triangle};
     for (uint32_t t = 0; t < cluster.triangle_count; ++t, local += 3) {
         const uint32_t vertices[3] = {list[local[0]], list[local[1]], list[local[2]]};
         double normal[3];
-        if (face_normal(*domain_, vertices, normal) != Facing::kFine) continue;
-        for (int k = 0; k < 3; ++k) sum->x[k] += static_cast<float>(normal[k]);
+        const bool is_fine = face_normal(*domain_, vertices, normal) == Facing::kFine;
+        for (int k = 0; k < 3; ++k) normals[t].x[k] = is_fine ? static_cast<float>(normal[k]) : 0.0f;
     }
 }
 
@@ -230,6 +260,13 @@ bool ClusterBuilder::add_to_cone(const gim_cluster& cluster, ConeFit* fit) const
         is_there = fit->add(*domain_, vertices);
     }
     return is_there;
+}
+
+ClusterBuilder::Leaves ClusterBuilder::leaves_of(uint32_t depth, uint32_t place) const {
+    const gim_cluster_depth& all = tree_->depths[depth];
+    const gim_cluster* const cluster = out_.clusters + all.first_cluster + place;
+    const bool is_last = place + 1 == all.cluster_count;
+    return {first_leaf(cluster), is_last ? tree_->depths[0].cluster_count : first_leaf(cluster + 1)};
 }
 
 uint32_t ClusterBuilder::first_leaf(const gim_cluster* cluster) const {

@@ -291,7 +291,8 @@ TEST(Clusters, WhatTouchesTheFrustumIsNotCulledByItsBall) {
             for (const Face& face : c.faces_below(cluster)) vertices.insert(face.begin(), face.end());
             for (const Face& face : c.faces(cluster)) vertices.insert(face.begin(), face.end());
             for (int i = 0; i < kEyes; ++i) {
-                // A plane of a frustum, some of them through a vertex.
+                // A triangle that touches a frustum has a vertex inside of each of its planes. Half of the planes run
+                // through a vertex.
                 const Point normal = random_direction(random);
                 Point through =
                     point(root.center) + (double{root.radius} * between(random, 0, 1)) * random_direction(random);
@@ -309,10 +310,9 @@ TEST(Clusters, WhatTouchesTheFrustumIsNotCulledByItsBall) {
             }
         }
     });
-    EXPECT_GT(culled, tests / 10);
+    EXPECT_GT(culled, tests / 20);
 }
 
-// The plane that touches the ball's farthest vertex from outside must not cull it.
 TEST(Clusters, BallsHoldAllBelow) {
     for_each_example([&](const Clusters& c, uint32_t) {
         for (const gim_cluster& cluster : c.clusters) {
@@ -424,18 +424,19 @@ TEST(CacheMisses, AreThoseOfACacheThatForgetsTheFirst) {
     EXPECT_EQ(gim_count_cache_misses(triangles, UINT32_MAX, 5, 4, scratch, &s), GIM_LIMIT_EXCEEDED);
 }
 
-// A cluster of 8 x 8 cells has 81 vertices, and a small cache needs few of them twice.
+// 8 x 8 cells have 81 vertices and 128 triangles. A cache of 16 needs no vertex of a cluster twice.
 TEST(CacheMisses, AreFewInTheOrderOfClusters) {
-    const Clusters c("sphere-33-lossy", 8);
-    std::vector<uint32_t> indices(3 * size_t{c.tree.depths[0].triangle_count});
-    gim_read_cluster_triangles(c.clusters.data(), c.tree.depths[0].cluster_count, c.vertices.data(), c.triangles.data(),
+    const Clusters c("tiles-one-lossy", 8);
+    const gim_cluster_depth& finest = c.tree.depths[0];
+    std::vector<uint32_t> indices(3 * size_t{finest.triangle_count});
+    gim_read_cluster_triangles(c.clusters.data(), finest.cluster_count, c.vertices.data(), c.triangles.data(),
                                indices.data());
     std::vector<uint32_t> scratch(c.surface.shape.vertex_count);
     gim_cache_statistics s{};
-    ASSERT_EQ(gim_count_cache_misses(indices.data(), c.tree.depths[0].triangle_count, c.surface.shape.vertex_count, 16,
+    ASSERT_EQ(gim_count_cache_misses(indices.data(), finest.triangle_count, c.surface.shape.vertex_count, 16,
                                      scratch.data(), &s),
               GIM_OK);
-    EXPECT_LT(s.acmr, 0.72f);
+    EXPECT_LE(s.acmr, 81.0f / 128 + 0.01f);
 }
 
 }  // namespace
