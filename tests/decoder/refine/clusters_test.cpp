@@ -111,10 +111,12 @@ struct Clusters {
 
 template <class F>
 void for_each_example(const F& f) {
-    for (const char* name : kRefinables) {
+    std::vector<std::string> names(std::begin(kRefinables), std::end(kRefinables));
+    names.push_back("tiles-pillow-lossless-20-bits");  // two tiles glued all around: diagonals must run through corners
+    for (const std::string& name : names) {
         for (const uint32_t side : {8u, 4u}) {
             for (const uint32_t level : {0u, 1u}) {
-                SCOPED_TRACE(std::string(name) + ", side " + std::to_string(side) + ", level " + std::to_string(level));
+                SCOPED_TRACE(name + ", side " + std::to_string(side) + ", level " + std::to_string(level));
                 const Clusters c(name, side, level);
                 if (::testing::Test::HasFailure()) return;
                 f(c, side);
@@ -146,6 +148,9 @@ TEST(Clusters, EveryDepthIsTheWholeSurface) {
     for_each_example([](const Clusters& c, uint32_t) {
         Refinable r = Refinable(c.surface.name, 0, c.surface.level);
         const Topology base = topology_of(r);
+        std::multiset<Face> coarsest;
+        for (const Face& face : c.faces_of_depth(c.tree.mesh_depth_count - 1)) coarsest.insert(turned(face));
+        EXPECT_EQ(coarsest, r.faces()) << "two triangles a tile, as gim_begin_refined has them";
         ASSERT_EQ(1u << (c.tree.mesh_depth_count - 1), r.shape.intervals);
         for (uint32_t depth = 0; depth < c.tree.mesh_depth_count; ++depth) {
             SCOPED_TRACE(depth);
