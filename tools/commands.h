@@ -36,7 +36,7 @@ int run_decode(const DecodeCommand& command);
 
 struct InfoCommand {
     std::string input;
-    bool json = false;
+    bool json = false, clusters = false;
 };
 int run_info(const InfoCommand& command);
 
