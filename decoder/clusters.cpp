@@ -6,7 +6,7 @@
 
 #include "decoder/layout/level_reader.h"
 #include "decoder/open_domain.h"
-#include "decoder/refine/clusters.h"
+#include "decoder/refine/cluster_builder.h"
 
 using namespace gim;
 

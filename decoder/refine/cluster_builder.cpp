@@ -1,4 +1,4 @@
-#include "decoder/refine/clusters.h"
+#include "decoder/refine/cluster_builder.h"
 
 #include <algorithm>
 #include <bit>
