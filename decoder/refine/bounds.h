@@ -1,7 +1,7 @@
 // Bounds of clusters: balls, normal cones, and how far a coarse cell is from the samples within it.
 //
-// All is computed in binary64 from binary32 positions and then rounded outwards, by more than the tests of a caller err who
-// computes in binary32 (gim/clusters.h).
+// Bounds are computed in binary64 from binary32 positions, and rounded outwards by more than a caller errs who tests in
+// binary32 (gim/clusters.h).
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Cone {
     float apex[3] = {}, axis[3] = {}, cutoff = 1;
 };
 
-Cone no_cone(const Ball& around);
+Cone no_cone(const Ball& around);  // culls nothing
 
 // Unit normal of a triangle, in binary64. kNone: it has no area, so it is seen from nowhere. kUnsure: it is so thin that
 // rounding decides where it looks.
@@ -35,13 +35,13 @@ Facing face_normal(const QuadDomain& domain, const uint32_t* vertices, double* n
 struct Normal {
     float x[3];
 };
-// About the axis of the narrowest cone that holds them. Normals of length 0 count as if they were any.
+// About the axis of the narrowest cone that holds them. Normals of length 0 do not turn it.
 void middle_of_normals(std::span<const Normal> normals, float* axis);
 
-// The narrowest cone around `axis` that all triangles have a part in. First begin, then add all, then finish.
+// The narrowest cone around `axis` that holds the normals of all triangles that are added.
 class ConeFit {
   public:
-    // axis: any length. center: about where the triangles are.
+    // axis: any length. around: a ball that holds the triangles.
     ConeFit(const float* axis, const Ball& around);
     // Returns whether there can still be a cone.
     bool add(const QuadDomain& domain, const uint32_t* vertices);

@@ -343,7 +343,7 @@ double distance_to(const std::vector<Corners>& surface, const Point& p) {
 
 TEST(Clusters, NoSurfaceIsFartherFromTheOtherThanTheError) {
     Random random(13);
-    uint64_t errors = 0;
+    uint64_t large = 0, tests = 0;
     for_each_example([&](const Clusters& c, uint32_t) {
         for (const gim_cluster& cluster : c.clusters) {
             if (cluster.depth >= c.tree.mesh_depth_count) {
@@ -363,7 +363,8 @@ TEST(Clusters, NoSurfaceIsFartherFromTheOtherThanTheError) {
                     const double y = i % 4 == 0 ? between(random, 0, 1 - x) : 0;
                     const double d = distance_to(to, f[0] + x * (f[1] - f[0]) + y * (f[2] - f[0]));
                     ASSERT_LE(d, double{cluster.error}) << "depth " << cluster.depth;
-                    errors += d > 0.1 * double{cluster.error};
+                    large += d > 0.1 * double{cluster.error};
+                    ++tests;
                 }
             };
             compare(below, own);
@@ -371,7 +372,7 @@ TEST(Clusters, NoSurfaceIsFartherFromTheOtherThanTheError) {
             if (HasFatalFailure()) return;
         }
     });
-    EXPECT_GT(errors, 1000u);
+    EXPECT_GT(large, tests / 20) << "the error says little";
 }
 
 TEST(Clusters, WrongArgumentsAndSmallMemoryAreRefused) {
