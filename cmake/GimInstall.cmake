@@ -24,7 +24,8 @@ endif()
 install(TARGETS gim_format gim_decoder EXPORT gim_decoder_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT decoder)
 set(gim_decoder_headers ${PROJECT_SOURCE_DIR}/decoder/include/gim)
-install(FILES ${gim_decoder_headers}/decoder.h ${gim_decoder_headers}/decoder.hpp ${gim_decoder_headers}/refine.h
+install(FILES ${gim_decoder_headers}/clusters.h ${gim_decoder_headers}/decoder.h
+              ${gim_decoder_headers}/decoder.hpp ${gim_decoder_headers}/refine.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gim COMPONENT decoder)
 install(EXPORT gim_decoder_targets NAMESPACE gim:: FILE gim-decoder-targets.cmake
         DESTINATION ${gim_package_dir} COMPONENT decoder)

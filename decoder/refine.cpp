@@ -8,6 +8,7 @@
 #include <span>
 
 #include "decoder/layout/level_reader.h"
+#include "decoder/open_domain.h"
 #include "decoder/refine/details.h"
 #include "decoder/refine/patches.h"
 #include "decoder/refine/quad_domain.h"
@@ -16,10 +17,6 @@
 #include "decoder/with_image.h"
 
 using namespace gim;
-
-struct gim_domain {
-    QuadDomain domain;
-};
 
 struct gim_refined {
     RefinedMesh mesh;

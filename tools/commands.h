@@ -55,7 +55,7 @@ int run_bench_scene(const BenchSceneCommand& command);
 
 struct InfoCommand {
     std::string input;
-    bool json = false;
+    bool json = false, clusters = false;
 };
 int run_info(const InfoCommand& command);
 

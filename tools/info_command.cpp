@@ -5,6 +5,7 @@
 #include <set>
 
 #include "gim/decoder.hpp"
+#include "tools/cluster_report.h"
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
@@ -19,7 +20,8 @@ struct Image {
     std::vector<DecoderLevel> levels;
     uint32_t paths = 0;
     std::vector<DecoderPlane> planes;
-    uint32_t seam_points = 0;  // surface points on the ring of level 0, mates counted once
+    uint32_t seam_points = 0;              // surface points on the ring of level 0, mates counted once
+    std::vector<ClusterFigures> clusters;  // empty unless they are asked for and the layout has them
 };
 
 struct Description {
@@ -146,6 +148,16 @@ Result<Description> describe(const Bytes& file) {
     return d;
 }
 
+void add_clusters(const Bytes& file, Description& d) {
+    for (uint32_t i = 0; i < d.info.image_count && d.info.layout != GIM_LAYOUT_MCGIM; ++i) {
+        std::vector<ClusterFigures>& figures = d.images[i].clusters;
+        const gim_status status = measure_clusters(d.info, file, i, &figures);
+        if (status == GIM_OK || status == GIM_NO_SUCH_LEVEL) continue;
+        figures.clear();
+        d.problems.push_back("clusters of image " + std::to_string(i) + ": " + describe_status(status));
+    }
+}
+
 double bits_per_sample(const gim_info& info) {
     return info.sample_count == 0 ? 0
                                   : 8.0 * static_cast<double>(info.file_size) / static_cast<double>(info.sample_count);
@@ -172,8 +184,10 @@ void print_json(const std::string& path, const Description& d) {
                               {"bytes", plane.stream_size},
                               {"quantizer", plane.quantizer}});
         }
-        images.push_back(
-            {{"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}});
+        ordered_json entry = {
+            {"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}};
+        if (!image.clusters.empty()) entry["clusters"] = to_json(image.clusters);
+        images.push_back(entry);
     }
     ordered_json chunks = ordered_json::array();
     for (const gim_chunk& chunk : d.chunks) {
@@ -246,6 +260,9 @@ void print_text(const std::string& path, const Description& d) {
                         static_cast<double>(plane.quantizer));
         }
     }
+    for (uint32_t i = 0; i < d.images.size(); ++i) {
+        if (!d.images[i].clusters.empty()) print_clusters(i, d.images[i].clusters);
+    }
     std::printf("chunks\n");
     for (const gim_chunk& chunk : d.chunks) {
         std::printf("  %-8s", chunk.name);
@@ -268,9 +285,10 @@ int run_info(const InfoCommand& command) {
     const std::string name = shown_name(command.input, Direction::kRead);
     const Result<Bytes> file = read_named(command.input);
     if (!file.ok()) return report_error(name, file.error());
-    const Result<Description> described = describe(file.value());
+    Result<Description> described = describe(file.value());
     if (!described.ok()) return report_error(name, described.error());
-    const Description& description = described.value();
+    Description& description = described.value();
+    if (command.clusters && description.problems.empty()) add_clusters(file.value(), description);
     command.json ? print_json(command.input, description) : print_text(name, description);
 
     int exit_status = 0;

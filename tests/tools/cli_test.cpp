@@ -133,6 +133,20 @@ TEST_F(Cli, InfoIsForPeopleToo) {
     }
 }
 
+TEST_F(Cli, InfoTellsWhatClustersAreWorth) {
+    EXPECT_EQ(gim({"info", gim_path()}).out.find("clusters"), std::string::npos);
+    const Outcome text = gim({"info", gim_path(), "--clusters"});
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("clusters of 8 x 8 cells"), std::string::npos);
+    const json image = json::parse(gim({"info", gim_path(), "--clusters", "--json"}).out)["images"][0];
+    ASSERT_GE(image["clusters"].size(), 2U);
+    EXPECT_EQ(image["clusters"][0]["triangles"], image["levels"][0]["triangles"]);
+    EXPECT_EQ(image["clusters"][0]["error"], 0);
+    EXPECT_GT(image["clusters"][1]["error"], 0);
+    EXPECT_LT(image["clusters"][0]["acmr"], 0.8);
+    EXPECT_GT(image["clusters"][0]["culled"], 0);
+}
+
 TEST_F(Cli, CompareReadsMeshesAndGimFilesOnBothSides) {
     for (const auto& [reference, test] : {std::pair{mesh_path(), gim_path()}, std::pair{gim_path(), mesh_path()}}) {
         const Outcome compare = gim({"compare", reference, test, "--samples", "5000"});

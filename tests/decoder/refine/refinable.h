@@ -42,6 +42,8 @@ inline Face turned(Face face) {
 }
 
 struct Refinable {
+    std::string name;
+    uint32_t level;
     std::vector<uint8_t> file;
     gim_info info{};
     gim_domain_info shape{};
@@ -51,7 +53,8 @@ struct Refinable {
     gim_refined* mesh = nullptr;
 
     // most_triangles: 0 for as many as the finest mesh has.
-    explicit Refinable(const std::string& vector, uint32_t most_triangles = 0, uint32_t level = 0) {
+    explicit Refinable(const std::string& vector, uint32_t most_triangles = 0, uint32_t at_level = 0)
+        : name(vector), level(at_level) {
         file = read_bytes(std::filesystem::path(GIM_SOURCE_DIR) / "spec/vectors/valid" / (vector + ".gim"));
         EXPECT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
         gim_level_info level_info;
