@@ -4,6 +4,7 @@
 #include <gim/decoder.h>
 #include <gim/refine.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -39,7 +40,7 @@ struct Mesh {
 bool stream(Mesh* mesh) {
     std::uint32_t wanted = GIM_MAX_LEVELS;  // the level to show next
     for (std::size_t here = 0; here < mesh->file.size();) {
-        here = std::fmin(here + 1024, mesh->file.size());
+        here = std::min(here + 1024, mesh->file.size());
         if (gim_read_info(mesh->file.data(), here, nullptr, &mesh->info) != GIM_OK) continue;  // or a broken file
         if (wanted == GIM_MAX_LEVELS) wanted = mesh->info.level_count - 1;
         gim_level_info level;
@@ -47,8 +48,8 @@ bool stream(Mesh* mesh) {
                level.prefix_size <= here) {
             Memory scratch(level.scratch_size);
             mesh->positions.resize(3 * std::size_t{level.vertex_count});
-            if (gim_decode_mesh(&mesh->info, mesh->file.data(), here, 0, wanted, mesh->positions.data(), nullptr, nullptr,
-                                nullptr, scratch.data(), scratch.size()) != GIM_OK)
+            if (gim_decode_mesh(&mesh->info, mesh->file.data(), here, 0, wanted, mesh->positions.data(), nullptr,
+                                nullptr, nullptr, scratch.data(), scratch.size()) != GIM_OK)
                 return false;
             std::printf("%zu bytes: level %u, %u vertices\n", here, wanted, level.vertex_count);
             if (wanted-- == 0) return true;
@@ -143,8 +144,8 @@ int main(int argc, char** argv) {
         const float pixels_per_unit = 1000;  // of an edge of length 1 at distance 1
         const std::uint32_t depth = choose_depth(mesh, pixels_per_unit / (distance * root.radius));
         const std::uint32_t changed = instance.update(eye, pixels_per_unit);
-        std::printf("distance %g: depth %u, %u triangles of it face the eye; refined: %zu triangles, %u changed\n", distance,
-                    depth, facing_triangles(mesh, depth, eye), instance.indices.size() / 3, changed);
+        std::printf("distance %g: depth %u, %u triangles of it face the eye; refined: %zu triangles, %u changed\n",
+                    distance, depth, facing_triangles(mesh, depth, eye), instance.indices.size() / 3, changed);
     }
     return 0;
 }
