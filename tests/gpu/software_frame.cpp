@@ -1,0 +1,126 @@
+#include "tests/gpu/software_frame.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace gim::test {
+namespace {
+
+constexpr int64_t kUnit = 256;  // of a pixel
+
+std::array<double, 4> times(const std::array<float, 16>& m, const std::array<double, 4>& v) {
+    std::array<double, 4> out{};
+    for (size_t c = 0; c < 4; ++c) {
+        for (size_t r = 0; r < 4; ++r) out[r] += m[4 * c + r] * v[c];
+    }
+    return out;
+}
+
+using Normal = std::array<double, 3>;
+
+// The mean of the four texels around a place.
+Normal filtered(const SurfaceData& surface, double column, double row) {
+    const auto clamped = [](double place, uint32_t size) { return std::clamp(place, 0.0, size - 1.0); };
+    const double x = std::floor(column), y = std::floor(row);
+    Normal sum{};
+    for (int k = 0; k < 4; ++k) {
+        const double dx = k % 2, dy = k / 2;
+        const double weight = (dx > 0 ? column - x : 1 - column + x) * (dy > 0 ? row - y : 1 - row + y);
+        const size_t i = static_cast<size_t>(clamped(y + dy, surface.map_height)) * surface.map_width +
+                         static_cast<size_t>(clamped(x + dx, surface.map_width));
+        for (size_t a = 0; a < 3; ++a) sum[a] += weight * surface.normals[4 * i + a] / 127;
+    }
+    return sum;
+}
+
+std::array<uint8_t, 4> lit(const Normal& map_normal, const ShaderInstance& instance, const ShaderView& view) {
+    const auto turned = times(instance.transform, {map_normal[0], map_normal[1], map_normal[2], 0});
+    const double length = std::sqrt(turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2]);
+    double towards = 0;
+    for (size_t a = 0; a < 3; ++a) towards += turned[a] * view.light[a] / std::max(length, 1e-6);
+    const double shade = view.light[3] + (1 - view.light[3]) * std::max(towards, 0.0);
+    std::array<uint8_t, 4> colour{0, 0, 0, 255};
+    for (size_t a = 0; a < 3; ++a)
+        colour[a] = static_cast<uint8_t>(std::lround(255 * std::clamp(view.front[a] * shade, 0.0, 1.0)));
+    return colour;
+}
+
+}  // namespace
+
+SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, std::array<uint8_t, 4> background)
+    : pixels_{width, height, std::vector<uint8_t>(size_t{4} * width * height)}, depth_(size_t{width} * height, 1.0) {
+    for (size_t i = 0; i < pixels_.rgba.size(); ++i) pixels_.rgba[i] = background[i % 4];
+}
+
+SoftwareFrame::Corner SoftwareFrame::project(const std::array<float, 3>& position, const ShaderInstance& instance,
+                                             const ShaderView& view) const {
+    const auto clip =
+        times(view.world_to_clip, times(instance.transform, {position[0], position[1], position[2], 1}));
+    assert(clip[3] > 0);
+    return {std::llround((0.5 + clip[0] / clip[3] / 2) * pixels_.width * kUnit),
+            std::llround((0.5 - clip[1] / clip[3] / 2) * pixels_.height * kUnit), clip[2] / clip[3], clip[3]};
+}
+
+// shade(weights, is_front) gives the colour of a place with these weights of the corners.
+template <class Shade>
+void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shade) {
+    const auto doubled_area = [](const Corner& a, const Corner& b, int64_t x, int64_t y) {
+        return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+    };
+    const int64_t whole = doubled_area(corners[0], corners[1], corners[2].x, corners[2].y);
+    if (whole == 0) return;
+    const int64_t sign = whole > 0 ? 1 : -1;
+    const auto [low_x, high_x] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
+    const auto [low_y, high_y] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+    const auto first = [](int64_t low) { return std::max<int64_t>(low / kUnit - 1, 0); };
+    const auto end = [](int64_t high, uint32_t size) { return std::min<int64_t>(high / kUnit + 1, size); };
+    for (int64_t y = first(low_y); y < end(high_y, pixels_.height); ++y) {
+        for (int64_t x = first(low_x); x < end(high_x, pixels_.width); ++x) {
+            std::array<double, 3> weights{};
+            bool is_in = true;
+            for (size_t k = 0; k < 3 && is_in; ++k) {
+                const Corner &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
+                const int64_t area = sign * doubled_area(a, b, x * kUnit + kUnit / 2, y * kUnit + kUnit / 2);
+                const int64_t right = sign * (b.x - a.x), down = sign * (b.y - a.y);
+                const bool has_edge = down < 0 || (down == 0 && right > 0);  // left and top edges
+                is_in = area > 0 || (area == 0 && has_edge);
+                weights[k] = static_cast<double>(area) / static_cast<double>(sign * whole);
+            }
+            if (!is_in) continue;
+            double depth = 0, nearness = 0;
+            for (size_t k = 0; k < 3; ++k) {
+                depth += weights[k] * corners[k].depth;
+                weights[k] /= corners[k].distance;
+                nearness += weights[k];
+            }
+            const size_t i = static_cast<size_t>(y) * pixels_.width + static_cast<size_t>(x);
+            if (depth < 0 || depth >= depth_[i]) continue;
+            depth_[i] = depth;
+            for (double& weight : weights) weight /= nearness;
+            const std::array<uint8_t, 4> colour = shade(weights, whole < 0);  // y runs down here
+            std::copy(colour.begin(), colour.end(), pixels_.rgba.begin() + static_cast<ptrdiff_t>(4 * i));
+        }
+    }
+}
+
+void SoftwareFrame::draw(std::span<const SoftTriangle> triangles, const SurfaceData& surface,
+                         const ShaderInstance& instance, const ShaderView& view) {
+    std::array<uint8_t, 4> back{};
+    for (size_t a = 0; a < 4; ++a) back[a] = static_cast<uint8_t>(std::lround(255 * view.back[a]));
+    for (const SoftTriangle& t : triangles) {
+        std::array<Corner, 3> corners{};
+        for (size_t k = 0; k < 3; ++k) corners[k] = project(t.positions[k], instance, view);
+        fill(corners, [&](const std::array<double, 3>& weights, bool is_front) {
+            if (!is_front) return back;
+            double column = 0, row = 0;
+            for (size_t k = 0; k < 3; ++k) {
+                column += weights[k] * t.texels[k][0];
+                row += weights[k] * t.texels[k][1];
+            }
+            return lit(filtered(surface, column, row), instance, view);
+        });
+    }
+}
+
+}  // namespace gim::test

@@ -1,0 +1,43 @@
+// The reference: triangles drawn by the processor, by the same rules as a GPU. A pixel belongs to a triangle if its centre
+// does; corners are rounded to 1/256 pixel; of two triangles at an edge the one below or to the right has it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tools/gpu/frame_pixels.h"
+#include "tools/gpu/shader_types.h"
+#include "tools/gpu/surface_data.h"
+
+namespace gim::test {
+
+struct SoftTriangle {
+    std::array<std::array<float, 3>, 3> positions;  // object
+    std::array<std::array<double, 2>, 3> texels;    // in the normal map: column, row; whole numbers are centres
+};
+
+class SoftwareFrame {
+  public:
+    SoftwareFrame(uint32_t width, uint32_t height, std::array<uint8_t, 4> background);
+
+    // Corners must lie in front of the eye. Depth outside of 0..1 is not drawn.
+    void draw(std::span<const SoftTriangle> triangles, const SurfaceData& surface, const ShaderInstance& instance,
+              const ShaderView& view);
+    const FramePixels& pixels() const { return pixels_; }
+
+  private:
+    struct Corner {
+        int64_t x, y;  // 1/256 pixel, y down
+        double depth, distance;
+    };
+    Corner project(const std::array<float, 3>& position, const ShaderInstance& instance, const ShaderView& view) const;
+    template <class Shade>
+    void fill(const std::array<Corner, 3>& corners, const Shade& shade);
+
+    FramePixels pixels_;
+    std::vector<double> depth_;
+};
+
+}  // namespace gim::test

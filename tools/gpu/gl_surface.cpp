@@ -1,0 +1,34 @@
+#include "tools/gpu/gl_surface.h"
+
+namespace gim {
+
+GlSurface::GlSurface(const SurfaceStore& store)
+    : normals_(make_texture(GL_RGBA8_SNORM, store.map_width, store.map_height)) {
+    domains_.write(std::span(store.domains));
+    positions_.write(std::span(store.positions));
+    glTextureSubImage2D(normals_.name(), 0, 0, 0, static_cast<GLsizei>(store.map_width),
+                        static_cast<GLsizei>(store.map_height), GL_RGBA, GL_BYTE, store.normals.data());
+    glTextureParameteri(normals_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(normals_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(normals_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(normals_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void GlSurface::set_patches(const InstancedPatches& patches) {
+    static_assert(sizeof(gim_patch) == 8);
+    patch_count_ = static_cast<uint32_t>(patches.patches.size());
+    patches_.write(std::span(patches.patches));
+    patch_instances_.write(std::span(patches.instances));
+}
+
+void GlSurface::bind(uint32_t capacity) {
+    view_.patch_count = patch_count_;
+    view_.capacity = capacity;
+    view_buffer_.write(std::span<const ShaderView>(&view_, 1));
+    view_buffer_.bind(GL_UNIFORM_BUFFER, 0);
+    const GlBuffer* const storage[] = {&patches_, &patch_instances_, &instances_, &domains_, &positions_};
+    for (GLuint i = 0; i < 5; ++i) storage[i]->bind(GL_SHADER_STORAGE_BUFFER, i);
+    glBindTextureUnit(0, normals_.name());
+}
+
+}  // namespace gim
