@@ -26,11 +26,20 @@ void write_triangle(uint place, uvec2 a, uvec2 b, uvec2 c, uint instance) {
     triangles[place] = uvec4(a.y << 16 | a.x, b.y << 16 | b.x, c.y << 16 | c.x, instance);
 }
 
-// Two triangles, along the shorter diagonal as gim_decode_mesh does. Corners run counter-clockwise seen from outside.
-void write_quad(uvec2 corner[4], Domain domain, uint instance) {
+// Whether a cell is split from its first corner, as gim_decode_mesh does it: a cell at a corner of a tile through that
+// corner, others along the shorter diagonal.
+bool is_split_from_first(uvec2 corner[4], Domain domain) {
+    uvec2 low = corner[0] % domain.slot, high = corner[2] - corner[0] + low;
+    bvec2 is_low = equal(low, uvec2(0)), is_high = equal(high, uvec2(domain.slot - 1));
+    if ((is_low.x || is_high.x) && (is_low.y || is_high.y)) return is_low.x == is_low.y;
     vec3 main = position_at(domain, corner[0]) - position_at(domain, corner[2]);
     vec3 anti = position_at(domain, corner[1]) - position_at(domain, corner[3]);
-    uint shift = dot(main, main) <= dot(anti, anti) ? 0 : 1;
+    return dot(main, main) <= dot(anti, anti);
+}
+
+// Two triangles. Corners run counter-clockwise seen from outside.
+void write_quad(uvec2 corner[4], Domain domain, uint instance) {
+    uint shift = is_split_from_first(corner, domain) ? 0 : 1;
     uint place = atomicAdd(next, 2);
     write_triangle(place, corner[shift], corner[shift + 1], corner[shift + 2], instance);
     write_triangle(place + 1, corner[shift], corner[shift + 2], corner[(shift + 3) & 3], instance);

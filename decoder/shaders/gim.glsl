@@ -4,7 +4,7 @@
 struct Domain {
     uint first_sample;  // in positions
     uint width;         // samples in a row of the image
-    uint slot;          // samples from one tile to the next in a row or column
+    uint slot;          // samples from one tile to the next in a row or column; all samples of a row if the image is one square
     uint unused;
     vec2 map_origin;    // of sample (0, 0) in the normal map, in texture coordinates
     vec2 map_slot;      // from one tile to the next

@@ -4,12 +4,13 @@
 layout(vertices = 1) out;
 #include "gim.glsl"
 
+flat in uint patch_number[];
 patch out uvec4 square;  // column, row, side, instance
 
 float edges(Patch p, uint border) { return float(1u << (p.inside + (p.finer >> border & 1))); }
 
 void main() {
-    Patch p = patch_at(gl_PrimitiveID);
+    Patch p = patch_at(patch_number[0]);
     square = uvec4(p.corner, p.side, p.instance);
     gl_TessLevelInner[0] = gl_TessLevelInner[1] = float(1u << p.inside);
     gl_TessLevelOuter[0] = edges(p, 3);  // u = 0: first column

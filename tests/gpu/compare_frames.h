@@ -1,9 +1,10 @@
-// How two frames of one surface differ.
+// How a frame differs from the reference.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "tools/gpu/frame_pixels.h"
 
@@ -12,21 +13,28 @@ namespace gim::test {
 inline constexpr std::array<uint8_t, 4> kBackground = {255, 0, 255, 255};
 inline constexpr std::array<uint8_t, 4> kBackFace = {0, 0, 255, 255};  // ShaderView.back
 
-struct FrameDifference {
-    uint32_t worst = 0;      // over all pixels: the least difference to a pixel of the other frame at most one pixel away
-    uint32_t differing = 0;  // pixels that differ from the pixel at the same place by more than `worst` may be
-};
-// In both directions. close: what `differing` lets pass.
-FrameDifference compare_frames(const FramePixels& one, const FramePixels& other, uint32_t close);
+// The reference has 3 x 3 samples for each pixel of a frame, so that it knows what is smaller than a pixel.
+inline constexpr uint32_t kFiner = 3;
 
-// Pixels of a frame that show what a closed surface hides, and that no pixel of the reference within one pixel shows.
-struct Leaks {
+struct Reference {
+    FramePixels samples;
+    std::vector<uint8_t> contested;  // per sample, SoftwareFrame::contested; there any part of the surface will do
+};
+
+struct FrameDifference {
+    // Over all pixels: the least difference to a sample of the reference that is at most one pixel away, and the other way
+    // round from the sample in the pixel's centre.
+    uint32_t worst = 0;
+    uint32_t far = 0;      // pixels for which it is more than `close`
+    uint32_t shifted = 0;  // pixels that differ from the sample in their centre by more than `close`
+    // Pixels of the frame that show what a closed surface hides, where no sample of the reference within one pixel does.
     uint32_t background = 0, backs = 0;
 };
-Leaks find_leaks(const FramePixels& frame, const FramePixels& reference);
+FrameDifference compare_frames(const FramePixels& frame, const Reference& reference, uint32_t close);
 
-// Pixels that show the surface.
-uint32_t count_covered(const FramePixels& frame);
+// Parts of the picture, 0..1: what shows the surface, what is contested.
+double covered_part(const FramePixels& frame);
+double contested_part(const Reference& reference);
 
 // Writes NAME.ppm into the folder GIM_GPU_FRAMES, if that variable is set, for people to look at.
 void keep_frame(const FramePixels& frame, const std::string& name);

@@ -6,55 +6,56 @@ namespace {
 
 using namespace gim::test;
 
-constexpr int kCameras = 20;  // of each model
+constexpr int kCameras = 8;  // of each model
 
 class Cracks : public GpuTest {
   protected:
     void expect_tight(uint32_t levels) {
         Random random(100 + levels);
-        for (const char* name : kRefinables) {
+        for (const char* name : kModels) {
             SCOPED_TRACE(name);
             Model model(name);
-            if (model.depth() + 1 < levels) continue;
             GlSurface surface = surface_of(model);
             for (int i = 0; i < kCameras; ++i) {
                 SCOPED_TRACE(i);
-                const std::vector<gim_patch> patches =
-                    model.banded_patches(model.depth() + 1 - levels, levels, random);
-                if (count_cell_sizes(patches) < levels) continue;
+                const uint32_t finest = number_between(random, levels - 1, model.depth());
+                const std::vector<gim_patch> patches = model.banded_patches(finest + 1 - levels, levels, random);
+                ASSERT_EQ(count_cell_sizes(patches), levels);
+                surface.set_patches(one_instance(patches));
                 const ShaderView view = lit_view(random_camera(model.centre, model.radius, random));
-                expect_tight(model, patches, view, surface, std::to_string(levels) + "-levels-" + std::to_string(i));
-                ++frames_;
+                const std::string what = model.name + "-" + std::to_string(levels) + "-levels-" + std::to_string(i);
+                expect_tight(Way::kExpand, placed(expand_patches(patches, model.surface), model.surface), model, view,
+                             surface, what);
+                expect_tight(Way::kTessellate, captured_triangles(surface, model.surface), model, view, surface, what);
             }
         }
-        EXPECT_GE(frames_, 60);
-        std::cout << frames_ << " views of " << levels << " levels, largest difference " << worst_ << "\n";
+        std::cout << levels << " levels: largest difference " << worst_[0] << " expanded, " << worst_[1]
+                  << " tessellated\n";
     }
 
   private:
-    void expect_tight(const Model& model, const std::vector<gim_patch>& patches, const ShaderView& view,
+    enum class Way { kExpand, kTessellate };
+
+    // The triangles have no gap, and the frame shows them and nothing else.
+    void expect_tight(Way way, const std::vector<SoftTriangle>& triangles, const Model& model, const ShaderView& view,
                       GlSurface& surface, const std::string& what) {
-        const std::vector<SampleTriangle> triangles = expand_patches(patches, model.surface);
-        ASSERT_EQ(count_open_edges(triangles, model.surface) == 0, is_closed(model));
-        const FramePixels reference = software_frame(placed(triangles, model.surface), model, view);
-        surface.set_patches(one_instance(patches));
+        SCOPED_TRACE(way == Way::kExpand ? "expanded" : "tessellated");
+        EXPECT_EQ(count_open_edges(triangles), 0u);
         surface.set_view(view);
-        const FramePixels frames[2] = {expanded(surface), tessellated(surface)};
-        keep_frame(reference, model.name + "-" + what + "-software");
-        for (int way = 0; way < 2; ++way) {
-            const char* name = way == 0 ? "expanded" : "tessellated";
-            keep_frame(frames[way], model.name + "-" + what + "-" + name);
-            const Leaks leaks = find_leaks(frames[way], reference);
-            EXPECT_EQ(leaks.background, 0u) << name;
-            EXPECT_EQ(leaks.backs, 0u) << name;
-        }
-        const FrameDifference found = compare_frames(frames[0], reference, kClose);
+        const FramePixels frame = way == Way::kExpand ? expanded(surface) : tessellated(surface);
+        const Reference reference = software_frame(triangles, model, view);
+        EXPECT_LT(contested_part(reference), 0.02);
+        const std::string name = what + (way == Way::kExpand ? "-expanded" : "-tessellated");
+        keep_frame(frame, name);
+        keep_frame(reference.samples, name + "-software");
+        const FrameDifference found = compare_frames(frame, reference, kClose);
+        EXPECT_EQ(found.background, 0u);
+        EXPECT_EQ(found.backs, 0u);
         EXPECT_LE(found.worst, kClose);
-        worst_ = std::max(worst_, found.worst);
+        worst_[static_cast<size_t>(way)] = std::max(worst_[static_cast<size_t>(way)], found.worst);
     }
 
-    int frames_ = 0;
-    uint32_t worst_ = 0;
+    std::array<uint32_t, 2> worst_{};
 };
 
 TEST_F(Cracks, TwoLevelsAreTight) { expect_tight(2); }
@@ -64,28 +65,28 @@ TEST_F(Cracks, FourLevelsAreTight) { expect_tight(4); }
 TEST_F(Cracks, BordersThatForgetTheirNeighboursLeak) {
     Random random(7);
     uint32_t leaky[2] = {0, 0};
-    for (const char* name : {"tiles-torus-lossy", "torus-33-lossy", "tiles-cube-lossy"}) {
+    for (const char* name : {"limbs-square", "limbs-tiles", "tori-2-tiles"}) {
         Model model(name);
         GlSurface surface = surface_of(model);
         for (int i = 0; i < kCameras; ++i) {
             std::vector<gim_patch> patches = model.banded_patches(0, 4, random);
             const ShaderView view = lit_view(random_camera(model.centre, model.radius, random));
-            const FramePixels reference =
+            const Reference reference =
                 software_frame(placed(expand_patches(patches, model.surface), model.surface), model, view);
             for (gim_patch& p : patches) p.finer = 0;
             surface.set_patches(one_instance(patches));
             surface.set_view(view);
             const FramePixels frames[2] = {expanded(surface), tessellated(surface)};
             for (int way = 0; way < 2; ++way) {
-                const Leaks leaks = find_leaks(frames[way], reference);
-                leaky[way] += leaks.background + leaks.backs > 0 ? 1 : 0;
+                const FrameDifference found = compare_frames(frames[way], reference, kClose);
+                leaky[way] += found.background + found.backs > 0 ? 1 : 0;
                 keep_frame(frames[way], std::string(name) + "-leaky-" + std::to_string(2 * i + way));
             }
         }
     }
     std::cout << leaky[0] << " and " << leaky[1] << " of " << 3 * kCameras << " views leak\n";
-    EXPECT_GT(leaky[0], 30u);
-    EXPECT_GT(leaky[1], 30u);
+    EXPECT_GT(leaky[0], 20u);
+    EXPECT_GT(leaky[1], 20u);
 }
 
 }  // namespace

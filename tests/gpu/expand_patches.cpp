@@ -1,7 +1,7 @@
 #include "tests/gpu/expand_patches.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cstdlib>
 #include <map>
 
 namespace gim::test {
@@ -15,6 +15,19 @@ std::array<float, 3> position_of(const SurfaceData& surface, const Sample& at) {
 float squared_distance(const SurfaceData& surface, const Sample& a, const Sample& b) {
     const auto p = position_of(surface, a), q = position_of(surface, b);
     return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]);
+}
+
+bool is_split_from_first(const Sample& low, uint32_t size, const SurfaceData& surface) {
+    bool is_first[2], is_last[2];
+    for (size_t a = 0; a < 2; ++a) {
+        const uint32_t in_tile = low[a] % surface.slot;
+        is_first[a] = in_tile == 0;
+        is_last[a] = in_tile + size == surface.slot - 1;
+    }
+    if ((is_first[0] || is_last[0]) && (is_first[1] || is_last[1])) return is_first[0] == is_first[1];
+    const uint32_t right = low[0] + size, down = low[1] + size;
+    return squared_distance(surface, low, {right, down}) <=
+           squared_distance(surface, {right, low[1]}, {low[0], down});
 }
 
 // Walks around the cell, with a stop in the middle of each border that is finer.
@@ -39,7 +52,7 @@ void add_cell(const Sample& low, uint32_t size, uint32_t finer, const SurfaceDat
     if (rim.size() > 4) {
         const Sample centre = {low[0] + size / 2, low[1] + size / 2};
         for (size_t i = 0; i < rim.size(); ++i) out->push_back({rim[i], rim[(i + 1) % rim.size()], centre});
-    } else if (squared_distance(surface, rim[0], rim[2]) <= squared_distance(surface, rim[1], rim[3])) {
+    } else if (is_split_from_first(low, size, surface)) {
         out->push_back({rim[0], rim[1], rim[2]});
         out->push_back({rim[0], rim[2], rim[3]});
     } else {
@@ -68,23 +81,6 @@ std::vector<SampleTriangle> expand_patches(std::span<const gim_patch> patches, c
     return out;
 }
 
-uint64_t count_open_edges(std::span<const SampleTriangle> triangles, const SurfaceData& surface) {
-    std::map<std::array<float, 3>, uint32_t> numbers;
-    std::map<std::pair<uint32_t, uint32_t>, int64_t> balance;  // of the uses of an edge in its two directions
-    const auto number_of = [&](const Sample& at) {
-        return numbers.emplace(position_of(surface, at), static_cast<uint32_t>(numbers.size())).first->second;
-    };
-    for (const SampleTriangle& t : triangles) {
-        for (size_t k = 0; k < 3; ++k) {
-            const uint32_t a = number_of(t[k]), b = number_of(t[(k + 1) % 3]);
-            if (a != b) balance[std::minmax(a, b)] += a < b ? 1 : -1;
-        }
-    }
-    uint64_t open = 0;
-    for (const auto& [edge, uses] : balance) open += static_cast<uint64_t>(std::abs(uses));
-    return open;
-}
-
 std::vector<SoftTriangle> placed(std::span<const SampleTriangle> triangles, const SurfaceData& surface) {
     std::vector<SoftTriangle> out(triangles.size());
     for (size_t i = 0; i < triangles.size(); ++i) {
@@ -97,6 +93,25 @@ std::vector<SoftTriangle> placed(std::span<const SampleTriangle> triangles, cons
         }
     }
     return out;
+}
+
+uint64_t count_open_edges(std::span<const SoftTriangle> triangles) {
+    std::map<std::array<float, 3>, uint32_t> numbers;
+    std::map<std::pair<uint32_t, uint32_t>, int64_t> balance;  // of the uses of an edge in its two directions
+    const auto number_of = [&](const std::array<float, 3>& place) {
+        return numbers.emplace(place, static_cast<uint32_t>(numbers.size())).first->second;
+    };
+    for (const SoftTriangle& t : triangles) {
+        std::array<uint32_t, 3> corner{};
+        for (size_t k = 0; k < 3; ++k) corner[k] = number_of(t.positions[k]);
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t a = corner[k], b = corner[(k + 1) % 3];
+            if (a != b) balance[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    }
+    uint64_t open = 0;
+    for (const auto& [edge, uses] : balance) open += static_cast<uint64_t>(std::abs(uses));
+    return open;
 }
 
 }  // namespace gim::test

@@ -19,10 +19,10 @@ using SampleTriangle = std::array<Sample, 3>;  // counter-clockwise seen from ou
 std::vector<SampleTriangle> expand_patches(std::span<const gim_patch> patches, const SurfaceData& surface,
                                            uint32_t extra = 0);
 
-// Edges that the next triangle does not go back along. Samples at one place are one vertex. A closed surface has none.
-uint64_t count_open_edges(std::span<const SampleTriangle> triangles, const SurfaceData& surface);
-
 // With positions, and the places in the normal map by ShaderDomain's rule.
 std::vector<SoftTriangle> placed(std::span<const SampleTriangle> triangles, const SurfaceData& surface);
+
+// Edges that no other triangle goes back along. Corners at one place are one vertex. A closed surface has none.
+uint64_t count_open_edges(std::span<const SoftTriangle> triangles);
 
 }  // namespace gim::test

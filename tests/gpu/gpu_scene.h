@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "tests/gpu/captured_triangles.h"
 #include "tests/gpu/compare_frames.h"
 #include "tests/gpu/views.h"
 #include "tools/gpu/egl_context.h"
@@ -32,7 +33,7 @@ class GpuTest : public ::testing::Test {
         auto frame = GlFrame::create(kFrameSide, kFrameSide);
         ASSERT_TRUE(frame.ok()) << frame.error().message;
         frame_.emplace(std::move(frame.value()));
-        auto expand = GlExpand::create(1u << 16);
+        auto expand = GlExpand::create(1u << 18);
         ASSERT_TRUE(expand.ok()) << expand.error().message;
         expand_.emplace(std::move(expand.value()));
         auto tessellate = GlTessellate::create();
@@ -76,11 +77,11 @@ inline InstancedPatches one_instance(const std::vector<gim_patch>& patches) {
     return list;
 }
 
-inline FramePixels software_frame(const std::vector<SoftTriangle>& triangles, const Model& model,
+inline Reference software_frame(const std::vector<SoftTriangle>& triangles, const Model& model,
                                   const ShaderView& view) {
-    SoftwareFrame frame(kFrameSide, kFrameSide, kBackground);
+    SoftwareFrame frame(kFrameSide, kFrameSide, kFiner, kBackground);
     frame.draw(triangles, model.surface, ShaderInstance{}, view);
-    return frame.pixels();
+    return {frame.pixels(), frame.contested()};
 }
 
 }  // namespace gim::test

@@ -55,7 +55,7 @@ class Scene : public GpuTest {
 
 TEST_F(Scene, OneDrawShowsManyInstancesAsFineAsTheScreenWants) {
     Random random(31);
-    for (const char* name : {"tiles-torus-lossy", "sphere-33-lossy", "tiles-cube-lossy", "torus-33-lossy"})
+    for (const char* name : {"limbs-tiles", "torus-square", "tori-2-tiles", "sphere-tiles"})
         models_.emplace_back(name);
     add_instances(16, random);
     std::vector<SurfaceData> surfaces;
@@ -79,7 +79,7 @@ TEST_F(Scene, OneDrawShowsManyInstancesAsFineAsTheScreenWants) {
     view.eye[3] /= 4;  // 4 pixels
     surface.set_view(view);
 
-    SoftwareFrame reference(kFrameSide, kFrameSide, kBackground);
+    SoftwareFrame reference(kFrameSide, kFrameSide, kFiner, kBackground);
     std::set<uint32_t> extras;
     for (const ShaderInstance& instance : instances_) {
         const Model& model = models_[instance.domain];
@@ -93,12 +93,12 @@ TEST_F(Scene, OneDrawShowsManyInstancesAsFineAsTheScreenWants) {
     keep_frame(reference.pixels(), "scene-software");
     keep_frame(frames[0], "scene-expanded");
     keep_frame(frames[1], "scene-tessellated");
-    for (const FramePixels& frame : frames) {
-        const Leaks leaks = find_leaks(frame, reference.pixels());
-        EXPECT_EQ(leaks.background, 0u);
-        EXPECT_EQ(leaks.backs, 0u);
-    }
-    EXPECT_LE(compare_frames(frames[0], reference.pixels(), kClose).worst, kClose);
+    const Reference expected{reference.pixels(), reference.contested()};
+    const FrameDifference found = compare_frames(frames[0], expected, kClose);
+    EXPECT_EQ(found.background + found.backs, 0u);
+    EXPECT_LE(found.worst, kClose);
+    // The tessellator takes other diagonals, and coarse cells show it.
+    EXPECT_LT(compare_frames(frames[1], expected, 32).shifted, kFrameSide * kFrameSide / 50);
 }
 
 }  // namespace

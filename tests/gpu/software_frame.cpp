@@ -48,8 +48,13 @@ std::array<uint8_t, 4> lit(const Normal& map_normal, const ShaderInstance& insta
 
 }  // namespace
 
-SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, std::array<uint8_t, 4> background)
-    : pixels_{width, height, std::vector<uint8_t>(size_t{4} * width * height)}, depth_(size_t{width} * height, 1.0) {
+SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background)
+    : finer_(finer),
+      pixels_{finer * width, finer * height, std::vector<uint8_t>(size_t{4} * finer * width * finer * height)},
+      depth_(pixels_.rgba.size() / 4, 1.0),
+      error_(depth_.size()),
+      hidden_(depth_.size(), 2),
+      is_thin_(depth_.size()) {
     for (size_t i = 0; i < pixels_.rgba.size(); ++i) pixels_.rgba[i] = background[i % 4];
 }
 
@@ -58,8 +63,26 @@ SoftwareFrame::Corner SoftwareFrame::project(const std::array<float, 3>& positio
     const auto clip =
         times(view.world_to_clip, times(instance.transform, {position[0], position[1], position[2], 1}));
     assert(clip[3] > 0);
-    return {std::llround((0.5 + clip[0] / clip[3] / 2) * pixels_.width * kUnit),
-            std::llround((0.5 - clip[1] / clip[3] / 2) * pixels_.height * kUnit), clip[2] / clip[3], clip[3]};
+    const auto rounded = [&](double part, uint32_t samples) {
+        return std::llround(part * samples / finer_ * kUnit) * finer_;
+    };
+    return {rounded(0.5 + clip[0] / clip[3] / 2, pixels_.width), rounded(0.5 - clip[1] / clip[3] / 2, pixels_.height),
+            clip[2] / clip[3], clip[3]};
+}
+
+// GPUs round corners to 1/256 of a pixel, each its own way, and depths to 24 bits.
+double SoftwareFrame::depth_error(const std::array<Corner, 3>& c, double doubled_area) const {
+    const double slope_x = (c[1].depth - c[0].depth) * static_cast<double>(c[2].y - c[0].y) -
+                           (c[2].depth - c[0].depth) * static_cast<double>(c[1].y - c[0].y);
+    const double slope_y = (c[1].depth - c[0].depth) * static_cast<double>(c[2].x - c[0].x) -
+                           (c[2].depth - c[0].depth) * static_cast<double>(c[1].x - c[0].x);
+    return 4 * finer_ * (std::abs(slope_x) + std::abs(slope_y)) / std::abs(doubled_area) + 1e-6;
+}
+
+std::vector<uint8_t> SoftwareFrame::contested() const {
+    std::vector<uint8_t> out(depth_.size());
+    for (size_t i = 0; i < out.size(); ++i) out[i] = is_thin_[i] != 0 || hidden_[i] <= depth_[i] + error_[i] ? 1 : 0;
+    return out;
 }
 
 // shade(weights, is_front) gives the colour of a place with these weights of the corners.
@@ -71,6 +94,11 @@ void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shad
     const int64_t whole = doubled_area(corners[0], corners[1], corners[2].x, corners[2].y);
     if (whole == 0) return;
     const int64_t sign = whole > 0 ? 1 : -1;
+    const double error = depth_error(corners, static_cast<double>(whole));
+    int64_t around = 0;
+    for (size_t k = 0; k < 3; ++k)
+        around += std::abs(corners[k].x - corners[(k + 1) % 3].x) + std::abs(corners[k].y - corners[(k + 1) % 3].y);
+    const bool is_thin = std::abs(whole) <= around * finer_;
     const auto [low_x, high_x] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
     const auto [low_y, high_y] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
     const auto first = [](int64_t low) { return std::max<int64_t>(low / kUnit - 1, 0); };
@@ -95,8 +123,15 @@ void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shad
                 nearness += weights[k];
             }
             const size_t i = static_cast<size_t>(y) * pixels_.width + static_cast<size_t>(x);
-            if (depth < 0 || depth >= depth_[i]) continue;
+            if (depth < 0 || depth >= 1) continue;
+            if (depth >= depth_[i]) {
+                hidden_[i] = std::min(hidden_[i], depth - error);
+                continue;
+            }
+            if (depth_[i] < 1) hidden_[i] = std::min(hidden_[i], depth_[i] - error_[i]);
             depth_[i] = depth;
+            error_[i] = error;
+            is_thin_[i] = is_thin ? 1 : 0;
             for (double& weight : weights) weight /= nearness;
             const std::array<uint8_t, 4> colour = shade(weights, whole < 0);  // y runs down here
             std::copy(colour.begin(), colour.end(), pixels_.rgba.begin() + static_cast<ptrdiff_t>(4 * i));

@@ -20,24 +20,35 @@ struct SoftTriangle {
 
 class SoftwareFrame {
   public:
-    SoftwareFrame(uint32_t width, uint32_t height, std::array<uint8_t, 4> background);
+    // Each pixel has finer * finer samples; finer is odd, so that one of them is in the centre. Corners are rounded to
+    // pixels as they are without.
+    SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background);
 
     // Corners must lie in front of the eye. Depth outside of 0..1 is not drawn.
     void draw(std::span<const SoftTriangle> triangles, const SurfaceData& surface, const ShaderInstance& instance,
               const ShaderView& view);
     const FramePixels& pixels() const { return pixels_; }
+    // Per sample: 1 if rounding may show something else: a hidden triangle is as close behind, or the triangle is so thin
+    // that either face may be seen. That is so at silhouettes, where front and back meet, and where a coarse surface passes
+    // through itself.
+    std::vector<uint8_t> contested() const;
 
   private:
     struct Corner {
-        int64_t x, y;  // 1/256 pixel, y down
+        int64_t x, y;  // 1/256 sample, y down
         double depth, distance;
     };
     Corner project(const std::array<float, 3>& position, const ShaderInstance& instance, const ShaderView& view) const;
+    double depth_error(const std::array<Corner, 3>& corners, double doubled_area) const;
     template <class Shade>
     void fill(const std::array<Corner, 3>& corners, const Shade& shade);
 
+    uint32_t finer_;
     FramePixels pixels_;
-    std::vector<double> depth_;
+    // Depths are known up to an error. Of what shows: the depth, the error, whether it is thin; of all that is hidden: the
+    // smallest depth that it may have.
+    std::vector<double> depth_, error_, hidden_;
+    std::vector<uint8_t> is_thin_;
 };
 
 }  // namespace gim::test

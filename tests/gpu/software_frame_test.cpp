@@ -47,13 +47,13 @@ TEST(SoftwareFrame, ASquareHasNoGapAndNoPixelTwice) {
     camera.width = camera.height = 64;
     const ShaderView view = view_of(camera);
     const SurfaceData surface = flat_map();
-    SoftwareFrame frame(64, 64, kBackground);
+    SoftwareFrame frame(64, 64, 1, kBackground);
     frame.draw(square(0.5f, 0), surface, {}, view);
     EXPECT_EQ(count_of(frame.pixels(), 204), 32u * 32u);  // 0.8, lit from the front
-    EXPECT_EQ(count_covered(frame.pixels()), 32u * 32u);
+    EXPECT_EQ(covered_part(frame.pixels()), 0.25);
 
     frame.draw(square(0.25f, -0.1f), surface, {}, view);  // hidden
-    EXPECT_EQ(count_covered(frame.pixels()), 32u * 32u);
+    EXPECT_EQ(covered_part(frame.pixels()), 0.25);
     ShaderInstance turned;
     turned.transform[0] = -1;  // seen from behind now
     turned.transform[10] = -1;
@@ -62,17 +62,35 @@ TEST(SoftwareFrame, ASquareHasNoGapAndNoPixelTwice) {
 }
 
 TEST(SoftwareFrame, ComparisonsFindWhatDiffers) {
-    const SoftwareFrame empty(8, 8, kBackground);
-    FramePixels one = empty.pixels(), other = empty.pixels();
-    EXPECT_EQ(compare_frames(one, other, 0).worst, 0u);
-    one.rgba[4 * (8 * 3 + 3)] = 155;
-    EXPECT_EQ(compare_frames(one, other, 0).worst, 100u);
-    EXPECT_EQ(compare_frames(one, other, 0).differing, 1u);
-    other.rgba[4 * (8 * 4 + 4)] = 155;  // one pixel away
-    EXPECT_EQ(compare_frames(one, other, 0).worst, 0u);
-    other.rgba[4 * (8 * 6 + 6)] = 0;
-    other.rgba[4 * (8 * 6 + 6) + 2] = 255;
-    EXPECT_EQ(find_leaks(other, one).backs, 1u);
+    const FramePixels empty = SoftwareFrame(8, 8, 1, kBackground).pixels();
+    const SoftwareFrame fine(8, 8, kFiner, kBackground);
+    FramePixels frame = empty;
+    Reference reference{fine.pixels(), fine.contested()};
+    const auto found = [&] { return compare_frames(frame, reference, 0); };
+    const auto set = [](FramePixels& pixels, size_t row, size_t column, std::array<uint8_t, 4> colour) {
+        std::copy(colour.begin(), colour.end(),
+                  pixels.rgba.begin() + static_cast<ptrdiff_t>(4 * (pixels.width * row + column)));
+    };
+    EXPECT_EQ(found().worst, 0u);
+    set(frame, 3, 3, {155, 0, 255, 255});
+    EXPECT_EQ(found().worst, 100u);
+    EXPECT_EQ(found().far, 1u);
+    EXPECT_EQ(found().shifted, 1u);
+    set(reference.samples, 13, 13, {155, 0, 255, 255});  // the centre of pixel (4, 4)
+    EXPECT_EQ(found().worst, 0u);
+    EXPECT_EQ(found().shifted, 2u);
+    set(reference.samples, 13, 13, kBackground);
+    set(reference.samples, 14, 10, {155, 0, 255, 255});  // more than a pixel away
+    EXPECT_EQ(found().worst, 100u);
+
+    frame = empty;
+    set(frame, 6, 6, kBackFace);
+    EXPECT_EQ(found().backs, 1u);
+    reference.contested[8 * kFiner * 19 + 20] = 1;
+    EXPECT_EQ(found().backs, 0u);
+    for (size_t i = 0; i < reference.contested.size(); ++i) set(reference.samples, 0, i, {9, 9, 9, 255});
+    frame = empty;
+    EXPECT_EQ(found().background, 64u);
 }
 
 }  // namespace

@@ -17,6 +17,12 @@ std::array<double, 3> random_direction(Random& random) {
     }
 }
 
+// As Refinable wants it: relative to the folder of vectors.
+std::string path_of(const std::string& file) {
+    const bool is_model = std::find(std::begin(kModels), std::end(kModels), file) != std::end(kModels);
+    return (is_model ? "../../../tests/gpu/models/" : "") + file;
+}
+
 struct WantedDepth {
     const Model& model;
     const Model::Wanted& wanted;
@@ -29,7 +35,8 @@ float need_of(void* user, uint32_t vertex, const float* position, float, float) 
 
 }  // namespace
 
-Model::Model(const std::string& vector, uint32_t level) : name(vector), refinable(vector, 0, level), level_(level) {
+Model::Model(const std::string& file, uint32_t level)
+    : name(file), refinable(path_of(file), 0, level), level_(level) {
     auto read = read_surface_data(refinable.info, refinable.file, 0, level);
     EXPECT_TRUE(read.ok());
     surface = std::move(read.value());
@@ -129,13 +136,6 @@ uint32_t count_cell_sizes(const std::vector<gim_patch>& patches) {
     std::set<int> sizes;
     for (const gim_patch& p : patches) sizes.insert(p.side - p.inside);
     return static_cast<uint32_t>(sizes.size());
-}
-
-bool is_closed(const Model& model) {
-    for (const char* open : {"tiles-strip-lossy-coarse", "tiles-one-lossy", "tube-33-lossy-coarse"}) {
-        if (model.name == open) return false;
-    }
-    return true;
 }
 
 Camera random_camera(const std::array<double, 3>& centre, double radius, Random& random) {

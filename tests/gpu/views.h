@@ -14,6 +14,9 @@
 
 namespace gim::test {
 
+// Closed surfaces in tests/gpu/models: squares and tiles, with and without handles.
+inline constexpr const char* kModels[] = {"limbs-square", "limbs-tiles", "sphere-tiles", "tori-2-tiles", "torus-square"};
+
 struct Model {
     std::string name;
     Refinable refinable;
@@ -22,7 +25,8 @@ struct Model {
     double radius = 0;
     std::vector<uint32_t> level_of;  // per vertex: splits that lead to it
 
-    explicit Model(const std::string& vector, uint32_t level = 0);
+    // A file of tests/gpu/models or of spec/vectors/valid.
+    explicit Model(const std::string& file, uint32_t level = 0);
 
     uint32_t depth() const;  // log2 of the intervals of a tile
     // Patches of a mesh whose cells are halved wanted(position) times, and neighbours as little more as they must.
@@ -42,9 +46,6 @@ struct Model {
 
 // Different sizes of cells.
 uint32_t count_cell_sizes(const std::vector<gim_patch>& patches);
-
-// The vectors of kRefinables without boundaries.
-bool is_closed(const Model& model);
 
 // Looks at the model from a random side, sometimes past it, and from so near that it fills the frame.
 Camera random_camera(const std::array<double, 3>& centre, double radius, Random& random);

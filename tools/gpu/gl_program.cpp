@@ -51,7 +51,8 @@ Result<void> attach(GLuint program, std::string_view name) {
 
 }  // namespace
 
-Result<GlProgram> GlProgram::build(const std::vector<std::string_view>& names) {
+Result<GlProgram> GlProgram::build(const std::vector<std::string_view>& names,
+                                   const std::vector<const char*>& captured) {
     GlProgram program(glCreateProgram());
     const GLuint name = program.object_.name();
     std::string all;
@@ -59,6 +60,8 @@ Result<GlProgram> GlProgram::build(const std::vector<std::string_view>& names) {
         if (const Result<void> attached = attach(name, part); !attached.ok()) return attached.error();
         all += (all.empty() ? "" : ", ") + std::string(part);
     }
+    if (!captured.empty())
+        glTransformFeedbackVaryings(name, static_cast<GLsizei>(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
     glLinkProgram(name);
     GLint is_linked = 0;
     glGetProgramiv(name, GL_LINK_STATUS, &is_linked);

@@ -12,8 +12,10 @@ namespace gim {
 
 class GlProgram {
   public:
-    // Names of files; what comes behind the dot tells the stage. Errors give the driver's log.
-    static Result<GlProgram> build(const std::vector<std::string_view>& names);
+    // Names of files; what comes behind the dot tells the stage. Errors give the driver's log. captured: outputs that
+    // transform feedback writes, one after the other.
+    static Result<GlProgram> build(const std::vector<std::string_view>& names,
+                                   const std::vector<const char*>& captured = {});
 
     void use() const { glUseProgram(object_.name()); }
 

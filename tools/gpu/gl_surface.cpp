@@ -1,6 +1,13 @@
 #include "tools/gpu/gl_surface.h"
 
+#include <algorithm>
+
 namespace gim {
+namespace {
+
+constexpr uint32_t kMostVertices = 65535;  // of a batch
+
+}  // namespace
 
 GlSurface::GlSurface(const SurfaceStore& store)
     : normals_(make_texture(GL_RGBA8_SNORM, store.map_width, store.map_height)) {
@@ -19,6 +26,19 @@ void GlSurface::set_patches(const InstancedPatches& patches) {
     patch_count_ = static_cast<uint32_t>(patches.patches.size());
     patches_.write(std::span(patches.patches));
     patch_instances_.write(std::span(patches.instances));
+    batches_.clear();
+    uint32_t vertices = 0;
+    for (uint32_t i = 0; i < patch_count_; ++i) {
+        const gim_patch& p = patches.patches[i];
+        const uint32_t rows = (1u << std::min<uint32_t>(p.side, p.inside + 2u)) + 1;
+        const uint32_t all = rows * rows + 4 * rows;  // finer borders have up to twice as many
+        if (vertices + all > kMostVertices && i > 0) {
+            batches_.push_back(i);
+            vertices = 0;
+        }
+        vertices += all;
+    }
+    if (patch_count_ > 0) batches_.push_back(patch_count_);
 }
 
 void GlSurface::bind(uint32_t capacity) {

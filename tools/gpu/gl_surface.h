@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "tools/gpu/gl_object.h"
 #include "tools/gpu/shader_types.h"
@@ -23,6 +24,9 @@ class GlSurface {
     void set_view(const ShaderView& view) { view_ = view; }
 
     uint32_t patch_count() const { return patch_count_; }
+    // Where batches end whose vertices 16 bits can number, even if cells are halved twice: Mesa's llvmpipe draws parts of
+    // larger batches of tessellated patches twice and leaves out others.
+    const std::vector<uint32_t>& patch_batches() const { return batches_; }
     // Binds all for shaders. capacity: of triangles, for the expansion.
     void bind(uint32_t capacity);
 
@@ -30,6 +34,7 @@ class GlSurface {
     GlBuffer domains_, positions_, instances_, patches_, patch_instances_, view_buffer_;
     GlTexture normals_;
     ShaderView view_;
+    std::vector<uint32_t> batches_;
     uint32_t patch_count_ = 0;
 };
 

@@ -19,7 +19,11 @@ void GlTessellate::draw(GlSurface& surface) const {
     program_.use();
     glBindVertexArray(no_vertices_.name());
     glPatchParameteri(GL_PATCH_VERTICES, 1);
-    glDrawArrays(GL_PATCHES, 0, static_cast<GLsizei>(surface.patch_count()));
+    GLint first = 0;
+    for (const uint32_t end : surface.patch_batches()) {
+        glDrawArrays(GL_PATCHES, first, static_cast<GLsizei>(end) - first);
+        first = static_cast<GLint>(end);
+    }
 }
 
 }  // namespace gim
