@@ -57,7 +57,8 @@ std::vector<SoftTriangle> captured_triangles(GlSurface& surface, const SurfaceDa
     for (size_t i = 0; i < read.size(); ++i) {
         const Vertex& v = read[i];
         out[i / 3].positions[i % 3] = {v.position[0], v.position[1], v.position[2]};
-        out[i / 3].texels[i % 3] = {double{v.map_at[0]} * data.map_width - 0.5, double{v.map_at[1]} * data.map_height - 0.5};
+        out[i / 3].texels[i % 3] = {double{v.map_at[0]} * data.map_width - 0.5,
+                                    double{v.map_at[1]} * data.map_height - 0.5};
     }
     return out;
 }

@@ -17,9 +17,7 @@ const uint8_t* pixel(const FramePixels& frame, int64_t x, int64_t y) {
     return &frame.rgba[4 * static_cast<size_t>(y * frame.width + x)];
 }
 
-bool is(const uint8_t* shown, const std::array<uint8_t, 4>& colour) {
-    return difference(shown, colour.data()) == 0;
-}
+bool is(const uint8_t* shown, const std::array<uint8_t, 4>& colour) { return difference(shown, colour.data()) == 0; }
 
 // Calls visit(column, row) for the places of a picture that are at most so far away.
 template <class Visit>
@@ -47,9 +45,8 @@ class Comparison {
             has_background = has_background || is(near, kBackground);
             has_back = has_back || is(near, kBackFace) || is_contested(u, v);
         });
-        around(frame_, x, y, 1, [&](int64_t u, int64_t v) {
-            to_frame = std::min(to_frame, between(u, v, centre(x), centre(y)));
-        });
+        around(frame_, x, y, 1,
+               [&](int64_t u, int64_t v) { to_frame = std::min(to_frame, between(u, v, centre(x), centre(y))); });
         const uint32_t worst = std::max(to_reference, to_frame);
         found->worst = std::max(found->worst, worst);
         found->far += worst > close ? 1 : 0;
@@ -100,8 +97,7 @@ void keep_frame(const FramePixels& frame, const std::string& name) {
     if (!folder) return;
     std::ofstream file(std::string(folder) + "/" + name + ".ppm", std::ios::binary);
     file << "P6 " << frame.width << " " << frame.height << " 255\n";
-    for (size_t i = 0; i < frame.rgba.size(); i += 4)
-        file.write(reinterpret_cast<const char*>(&frame.rgba[i]), 3);
+    for (size_t i = 0; i < frame.rgba.size(); i += 4) file.write(reinterpret_cast<const char*>(&frame.rgba[i]), 3);
 }
 
 }  // namespace gim::test

@@ -26,17 +26,13 @@ bool is_split_from_first(const Sample& low, uint32_t size, const SurfaceData& su
     }
     if ((is_first[0] || is_last[0]) && (is_first[1] || is_last[1])) return is_first[0] == is_first[1];
     const uint32_t right = low[0] + size, down = low[1] + size;
-    return squared_distance(surface, low, {right, down}) <=
-           squared_distance(surface, {right, low[1]}, {low[0], down});
+    return squared_distance(surface, low, {right, down}) <= squared_distance(surface, {right, low[1]}, {low[0], down});
 }
 
 // Walks around the cell, with a stop in the middle of each border that is finer.
 std::vector<Sample> rim_of(const Sample& low, uint32_t size, uint32_t finer) {
-    const Sample corners[5] = {low,
-                               {low[0] + size, low[1]},
-                               {low[0] + size, low[1] + size},
-                               {low[0], low[1] + size},
-                               low};
+    const Sample corners[5] = {
+        low, {low[0] + size, low[1]}, {low[0] + size, low[1] + size}, {low[0], low[1] + size}, low};
     std::vector<Sample> rim;
     for (uint32_t k = 0; k < 4; ++k) {
         rim.push_back(corners[k]);
@@ -88,8 +84,8 @@ std::vector<SoftTriangle> placed(std::span<const SampleTriangle> triangles, cons
             const Sample& at = triangles[i][k];
             out[i].positions[k] = position_of(surface, at);
             for (size_t a = 0; a < 2; ++a)
-                out[i].texels[k][a] = at[a] / surface.slot * surface.slot_texels[a] +
-                                      at[a] % surface.slot * surface.interval_texels[a];
+                out[i].texels[k][a] =
+                    at[a] / surface.slot * surface.slot_texels[a] + at[a] % surface.slot * surface.interval_texels[a];
         }
     }
     return out;

@@ -12,7 +12,7 @@
 
 namespace gim::test {
 
-using Sample = std::array<uint32_t, 2>;          // column, row
+using Sample = std::array<uint32_t, 2>;        // column, row
 using SampleTriangle = std::array<Sample, 3>;  // counter-clockwise seen from outside
 
 // Draws patches as the shaders promise. extra: halvings of every cell.

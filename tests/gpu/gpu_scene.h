@@ -40,9 +40,7 @@ class GpuTest : public ::testing::Test {
         ASSERT_TRUE(tessellate.ok()) << tessellate.error().message;
         tessellate_.emplace(std::move(tessellate.value()));
     }
-    void TearDown() override {
-        EXPECT_TRUE(!context_ || check_gl("the test").ok());
-    }
+    void TearDown() override { EXPECT_TRUE(!context_ || check_gl("the test").ok()); }
 
     FramePixels expanded(GlSurface& surface) {
         frame_->begin(kClear);
@@ -78,7 +76,7 @@ inline InstancedPatches one_instance(const std::vector<gim_patch>& patches) {
 }
 
 inline Reference software_frame(const std::vector<SoftTriangle>& triangles, const Model& model,
-                                  const ShaderView& view) {
+                                const ShaderView& view) {
     SoftwareFrame frame(kFrameSide, kFrameSide, kFiner, kBackground);
     frame.draw(triangles, model.surface, ShaderInstance{}, view);
     return {frame.pixels(), frame.contested()};

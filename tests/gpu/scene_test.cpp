@@ -55,8 +55,7 @@ class Scene : public GpuTest {
 
 TEST_F(Scene, OneDrawShowsManyInstancesAsFineAsTheScreenWants) {
     Random random(31);
-    for (const char* name : {"limbs-tiles", "torus-square", "tori-2-tiles", "sphere-tiles"})
-        models_.emplace_back(name);
+    for (const char* name : {"limbs-tiles", "torus-square", "tori-2-tiles", "sphere-tiles"}) models_.emplace_back(name);
     add_instances(16, random);
     std::vector<SurfaceData> surfaces;
     std::vector<std::vector<gim_patch>> coarse;

@@ -7,7 +7,7 @@
 namespace gim::test {
 namespace {
 
-constexpr int64_t kUnit = 256;  // of a pixel
+constexpr int64_t kUnit = 256;  // of a sample
 
 std::array<double, 4> times(const std::array<float, 16>& m, const std::array<double, 4>& v) {
     std::array<double, 4> out{};
@@ -48,8 +48,10 @@ std::array<uint8_t, 4> lit(const Normal& map_normal, const ShaderInstance& insta
 
 }  // namespace
 
-SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background)
+SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background,
+                             uint32_t parts)
     : finer_(finer),
+      rounding_(kUnit * finer / parts),
       pixels_{finer * width, finer * height, std::vector<uint8_t>(size_t{4} * finer * width * finer * height)},
       depth_(pixels_.rgba.size() / 4, 1.0),
       error_(depth_.size()),
@@ -60,23 +62,22 @@ SoftwareFrame::SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, st
 
 SoftwareFrame::Corner SoftwareFrame::project(const std::array<float, 3>& position, const ShaderInstance& instance,
                                              const ShaderView& view) const {
-    const auto clip =
-        times(view.world_to_clip, times(instance.transform, {position[0], position[1], position[2], 1}));
+    const auto clip = times(view.world_to_clip, times(instance.transform, {position[0], position[1], position[2], 1}));
     assert(clip[3] > 0);
     const auto rounded = [&](double part, uint32_t samples) {
-        return std::llround(part * samples / finer_ * kUnit) * finer_;
+        return std::llround(part * samples * kUnit / static_cast<double>(rounding_)) * rounding_;
     };
     return {rounded(0.5 + clip[0] / clip[3] / 2, pixels_.width), rounded(0.5 - clip[1] / clip[3] / 2, pixels_.height),
             clip[2] / clip[3], clip[3]};
 }
 
-// GPUs round corners to 1/256 of a pixel, each its own way, and depths to 24 bits.
+// GPUs round corners, each its own way, and depths to 24 bits.
 double SoftwareFrame::depth_error(const std::array<Corner, 3>& c, double doubled_area) const {
     const double slope_x = (c[1].depth - c[0].depth) * static_cast<double>(c[2].y - c[0].y) -
                            (c[2].depth - c[0].depth) * static_cast<double>(c[1].y - c[0].y);
     const double slope_y = (c[1].depth - c[0].depth) * static_cast<double>(c[2].x - c[0].x) -
                            (c[2].depth - c[0].depth) * static_cast<double>(c[1].x - c[0].x);
-    return 4 * finer_ * (std::abs(slope_x) + std::abs(slope_y)) / std::abs(doubled_area) + 1e-6;
+    return 4 * static_cast<double>(rounding_) * (std::abs(slope_x) + std::abs(slope_y)) / std::abs(doubled_area) + 1e-6;
 }
 
 std::vector<uint8_t> SoftwareFrame::contested() const {
@@ -98,7 +99,7 @@ void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shad
     int64_t around = 0;
     for (size_t k = 0; k < 3; ++k)
         around += std::abs(corners[k].x - corners[(k + 1) % 3].x) + std::abs(corners[k].y - corners[(k + 1) % 3].y);
-    const bool is_thin = std::abs(whole) <= around * finer_;
+    const bool is_thin = std::abs(whole) <= around * rounding_;
     const auto [low_x, high_x] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
     const auto [low_y, high_y] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
     const auto first = [](int64_t low) { return std::max<int64_t>(low / kUnit - 1, 0); };

@@ -1,5 +1,5 @@
 // The reference: triangles drawn by the processor, by the same rules as a GPU. A pixel belongs to a triangle if its centre
-// does; corners are rounded to 1/256 pixel; of two triangles at an edge the one below or to the right has it.
+// does; corners are rounded to a part of a pixel; of two triangles at an edge the one below or to the right has it.
 #pragma once
 
 #include <array>
@@ -18,11 +18,15 @@ struct SoftTriangle {
     std::array<std::array<double, 2>, 3> texels;    // in the normal map: column, row; whole numbers are centres
 };
 
+// Parts of a pixel that corners are rounded to: by most GPUs and Mesa's llvmpipe, and by SwiftShader.
+inline constexpr uint32_t kUsualParts = 256, kSwiftShaderParts = 16;
+
 class SoftwareFrame {
   public:
     // Each pixel has finer * finer samples; finer is odd, so that one of them is in the centre. Corners are rounded to
-    // pixels as they are without.
-    SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background);
+    // parts of pixels all the same.
+    SoftwareFrame(uint32_t width, uint32_t height, uint32_t finer, std::array<uint8_t, 4> background,
+                  uint32_t parts = kUsualParts);
 
     // Corners must lie in front of the eye. Depth outside of 0..1 is not drawn.
     void draw(std::span<const SoftTriangle> triangles, const SurfaceData& surface, const ShaderInstance& instance,
@@ -44,6 +48,7 @@ class SoftwareFrame {
     void fill(const std::array<Corner, 3>& corners, const Shade& shade);
 
     uint32_t finer_;
+    int64_t rounding_;  // 1/256 sample, to which corners are rounded
     FramePixels pixels_;
     // Depths are known up to an error. Of what shows: the depth, the error, whether it is thin; of all that is hidden: the
     // smallest depth that it may have.

@@ -22,7 +22,8 @@ SurfaceData flat_map() {
 
 // A square around (0, 0, z), as a fan of eight triangles around a place inside.
 std::vector<SoftTriangle> square(float half, float z) {
-    const float rim[9][2] = {{-1, -1}, {0.3f, -1}, {1, -1}, {1, 0.1f}, {1, 1}, {-0.2f, 1}, {-1, 1}, {-1, 0.4f}, {-1, -1}};
+    const float rim[9][2] = {{-1, -1},   {0.3f, -1}, {1, -1},    {1, 0.1f}, {1, 1},
+                             {-0.2f, 1}, {-1, 1},    {-1, 0.4f}, {-1, -1}};
     std::vector<SoftTriangle> out;
     for (size_t i = 0; i < 8; ++i) {
         SoftTriangle t{};

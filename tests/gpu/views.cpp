@@ -35,8 +35,7 @@ float need_of(void* user, uint32_t vertex, const float* position, float, float) 
 
 }  // namespace
 
-Model::Model(const std::string& file, uint32_t level)
-    : name(file), refinable(path_of(file), 0, level), level_(level) {
+Model::Model(const std::string& file, uint32_t level) : name(file), refinable(path_of(file), 0, level), level_(level) {
     auto read = read_surface_data(refinable.info, refinable.file, 0, level);
     EXPECT_TRUE(read.ok());
     surface = std::move(read.value());

@@ -15,7 +15,8 @@
 namespace gim::test {
 
 // Closed surfaces in tests/gpu/models: squares and tiles, with and without handles.
-inline constexpr const char* kModels[] = {"limbs-square", "limbs-tiles", "sphere-tiles", "tori-2-tiles", "torus-square"};
+inline constexpr const char* kModels[] = {"limbs-square", "limbs-tiles", "sphere-tiles", "tori-2-tiles",
+                                          "torus-square"};
 
 struct Model {
     std::string name;

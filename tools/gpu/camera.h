@@ -10,7 +10,7 @@ namespace gim {
 
 struct Camera {
     std::array<double, 3> eye{0, 0, 3}, target{}, up{0, 1, 0};
-    double field_of_view = 0.8;        // from the lower to the upper edge of the frame, radians
+    double field_of_view = 0.8;  // from the lower to the upper edge of the frame, radians
     double nearest = 0.1, farthest = 100;
     uint32_t width = 256, height = 256;  // of the frame
 };

@@ -48,17 +48,12 @@ std::string start(EGLDisplay display, EGLContext* context) {
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(display, any_config, &config, 1, &count) || count == 0) config = nullptr;
-    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
-                              4,
-                              EGL_CONTEXT_MINOR_VERSION,
-                              5,
-                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                              EGL_NONE};
+    const EGLint version[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     *context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
     if (*context == EGL_NO_CONTEXT) return "the driver has no OpenGL 4.5";
-    if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, *context))
-        return "the driver draws only to surfaces";
+    if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, *context)) return "the driver draws only to surfaces";
     return {};
 }
 

@@ -61,7 +61,8 @@ Result<GlProgram> GlProgram::build(const std::vector<std::string_view>& names,
         all += (all.empty() ? "" : ", ") + std::string(part);
     }
     if (!captured.empty())
-        glTransformFeedbackVaryings(name, static_cast<GLsizei>(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
+        glTransformFeedbackVaryings(name, static_cast<GLsizei>(captured.size()), captured.data(),
+                                    GL_INTERLEAVED_ATTRIBS);
     glLinkProgram(name);
     GLint is_linked = 0;
     glGetProgramiv(name, GL_LINK_STATUS, &is_linked);

@@ -4,7 +4,8 @@ namespace gim {
 
 Result<GlTessellate> GlTessellate::create() {
     // Drivers may leave the tessellator without storage buffers.
-    for (const GLenum limit : {GL_MAX_TESS_CONTROL_SHADER_STORAGE_BLOCKS, GL_MAX_TESS_EVALUATION_SHADER_STORAGE_BLOCKS}) {
+    for (const GLenum limit :
+         {GL_MAX_TESS_CONTROL_SHADER_STORAGE_BLOCKS, GL_MAX_TESS_EVALUATION_SHADER_STORAGE_BLOCKS}) {
         GLint blocks = 0;
         glGetIntegerv(limit, &blocks);
         if (blocks < 5) return Error{Stage::kInput, "the driver has too few storage buffers for tessellation shaders"};

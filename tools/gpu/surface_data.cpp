@@ -121,7 +121,8 @@ SurfaceStore join_surfaces(std::span<const SurfaceData> surfaces) {
         store.domains.push_back(domain);
         store.positions.insert(store.positions.end(), s.positions.begin(), s.positions.end());
         for (uint32_t row = 0; row < s.map_height; ++row)
-            std::copy_n(s.normals.begin() + static_cast<ptrdiff_t>(size_t{4} * row * s.map_width), size_t{4} * s.map_width,
+            std::copy_n(s.normals.begin() + static_cast<ptrdiff_t>(size_t{4} * row * s.map_width),
+                        size_t{4} * s.map_width,
                         store.normals.begin() + static_cast<ptrdiff_t>(size_t{4} * (top + row) * store.map_width));
         top += s.map_height;
     }

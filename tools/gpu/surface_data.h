@@ -14,11 +14,11 @@
 namespace gim {
 
 struct SurfaceData {
-    uint32_t width = 0, height = 0;        // samples
-    std::vector<float> positions;          // of gim_decode_positions, x y z
+    uint32_t width = 0, height = 0;          // samples
+    std::vector<float> positions;            // of gim_decode_positions, x y z
     uint32_t map_width = 0, map_height = 0;  // texels of the normal map
-    std::vector<int8_t> normals;           // x y z 0 each, 127 is 1
-    uint32_t slot = 0;                     // as in ShaderDomain
+    std::vector<int8_t> normals;             // x y z 0 each, 127 is 1
+    uint32_t slot = 0;                       // as in ShaderDomain
     // In texels of the map: from one tile to the next, and from one sample to the next; columns, rows.
     std::array<double, 2> slot_texels{}, interval_texels{};
 };
