@@ -27,11 +27,12 @@ declare -A may_include=(
     [encoder/tiles]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout"
     [encoder]="format encoder/base encoder/surface encoder/code encoder/image encoder/fit encoder/planes encoder/layout encoder/squares encoder/charts encoder/tiles"
     [corpus]=""
-    [tools]="corpus"
+    [tools]="corpus tools/gpu"
+    [tools/gpu]=""
     [tools/rd]="tools corpus"
     [tools/train]="format decoder/squares encoder/tiles"
 )
-readonly MOST_LINES=500
+readonly MOST_LINES=500 MOST_SHADER_LINES=150
 
 # Prints every include against the arrow. Public headers (gim/...) are everybody's.
 wrong_includes() {
@@ -48,6 +49,8 @@ wrong_includes() {
 long_files() {
     git ls-files 'format/*' 'decoder/*' 'encoder/*' 'tools/*' 'corpus/*' | grep -E '\.(h|hpp|cpp)$' | xargs wc -l |
         awk -v most="$MOST_LINES" '$2 != "total" && $1 > most { print $2 " has " $1 " lines" }'
+    git ls-files 'decoder/shaders/*' | grep -v '\.md$' | xargs wc -l |
+        awk -v most="$MOST_SHADER_LINES" '$2 != "total" && $1 > most { print $2 " has " $1 " lines" }'
 }
 
 mode=${1:-}

@@ -24,13 +24,14 @@ void write(const std::filesystem::path& path, std::span<const T> values) {
 }
 
 void write_case(const std::filesystem::path& folder, Model& model, const std::vector<gim_patch>& patches,
-                Random& random) {
+                uint32_t extra, Random& random) {
     std::filesystem::create_directories(folder);
     const SurfaceStore store = join_surfaces(std::vector<SurfaceData>{model.surface});
     InstancedPatches list;
     add_patches(patches, 0, 16, 0, &list);
-    const std::vector<SampleTriangle> triangles = expand_patches(patches, model.surface);
-    const ShaderInstance instance;
+    const std::vector<SampleTriangle> triangles = expand_patches(patches, model.surface, extra);
+    ShaderInstance instance;
+    instance.extra = extra;
     ShaderView view = lit_view(random_camera(model.centre, model.radius, random));
     view.patch_count = static_cast<uint32_t>(list.patches.size());
     view.capacity = static_cast<uint32_t>(triangles.size());
@@ -64,7 +65,8 @@ void write_all(const std::filesystem::path& folder) {
                 const auto patches = model.banded_patches(model.depth() + 1 - levels, levels, random);
                 const std::string title =
                     std::string(name) + "-" + std::to_string(levels) + "-levels-" + std::to_string(i);
-                write_case(folder / title, model, patches, random);
+                write_case(folder / title, model, patches, 0, random);
+                if (levels == 4) write_case(folder / (title + "-finer"), model, patches, 1, random);
             }
         }
     }
