@@ -21,6 +21,7 @@ struct Reference {
     std::vector<uint8_t> contested;  // per sample, SoftwareFrame::contested; there any part of the surface will do
 };
 
+// Of all pixels but those at the rim of the frame: what is within one pixel of them lies outside in part.
 struct FrameDifference {
     // Over all pixels: the least difference to a sample of the reference that is at most one pixel away, and the other way
     // round from the sample in the pixel's centre.

@@ -91,7 +91,7 @@ TEST(SoftwareFrame, ComparisonsFindWhatDiffers) {
     EXPECT_EQ(found().backs, 0u);
     for (size_t i = 0; i < reference.contested.size(); ++i) set(reference.samples, 0, i, {9, 9, 9, 255});
     frame = empty;
-    EXPECT_EQ(found().background, 64u);
+    EXPECT_EQ(found().background, 36u);
 }
 
 }  // namespace

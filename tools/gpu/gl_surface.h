@@ -24,8 +24,8 @@ class GlSurface {
     void set_view(const ShaderView& view) { view_ = view; }
 
     uint32_t patch_count() const { return patch_count_; }
-    // Where batches end whose vertices 16 bits can number, even if cells are halved twice: Mesa's llvmpipe draws parts of
-    // larger batches of tessellated patches twice and leaves out others.
+    // Where batches end whose vertices 16 bits can number, even if cells are halved twice. The llvmpipe of Mesa 22.3 leaves
+    // out parts of larger batches of tessellated patches.
     const std::vector<uint32_t>& patch_batches() const { return batches_; }
     // Binds all for shaders. capacity: of triangles, for the expansion.
     void bind(uint32_t capacity);

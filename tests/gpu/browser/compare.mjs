@@ -22,8 +22,8 @@ export function compare(frame, samples, contested, side, finer) {
       for (let u = Math.max(x - reach, 0); u <= Math.min(x + reach, size - 1); ++u) visit(u, v);
   };
   const found = { worst: 0, background: 0, backs: 0 };
-  for (let y = 0; y < side; ++y) {
-    for (let x = 0; x < side; ++x) {
+  for (let y = 1; y + 1 < side; ++y) {
+    for (let x = 1; x + 1 < side; ++x) {
       if (between(x, y, centre(x), centre(y)) <= 1) continue;
       let toReference = 255;
       let toFrame = 255;
