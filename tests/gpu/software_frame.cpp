@@ -107,16 +107,17 @@ void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shad
     for (int64_t y = first(low_y); y < end(high_y, pixels_.height); ++y) {
         for (int64_t x = first(low_x); x < end(high_x, pixels_.width); ++x) {
             std::array<double, 3> weights{};
-            bool is_in = true;
-            for (size_t k = 0; k < 3 && is_in; ++k) {
+            bool is_in = true, is_near = whole > 0;  // a back that nearly covers the sample
+            for (size_t k = 0; k < 3 && (is_in || is_near); ++k) {
                 const Corner &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
                 const int64_t area = sign * doubled_area(a, b, x * kUnit + kUnit / 2, y * kUnit + kUnit / 2);
                 const int64_t right = sign * (b.x - a.x), down = sign * (b.y - a.y);
                 const bool has_edge = down < 0 || (down == 0 && right > 0);  // left and top edges
-                is_in = area > 0 || (area == 0 && has_edge);
+                is_in = is_in && (area > 0 || (area == 0 && has_edge));
+                is_near = is_near && area >= -rounding_ * (std::abs(right) + std::abs(down));
                 weights[k] = static_cast<double>(area) / static_cast<double>(sign * whole);
             }
-            if (!is_in) continue;
+            if (!is_in && !is_near) continue;
             double depth = 0, nearness = 0;
             for (size_t k = 0; k < 3; ++k) {
                 depth += weights[k] * corners[k].depth;
@@ -125,7 +126,7 @@ void SoftwareFrame::fill(const std::array<Corner, 3>& corners, const Shade& shad
             }
             const size_t i = static_cast<size_t>(y) * pixels_.width + static_cast<size_t>(x);
             if (depth < 0 || depth >= 1) continue;
-            if (depth >= depth_[i]) {
+            if (!is_in || depth >= depth_[i]) {
                 hidden_[i] = std::min(hidden_[i], depth - error);
                 continue;
             }

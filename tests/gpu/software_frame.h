@@ -33,8 +33,8 @@ class SoftwareFrame {
               const ShaderView& view);
     const FramePixels& pixels() const { return pixels_; }
     // Per sample: 1 if rounding may show something else: a hidden triangle is as close behind, or the triangle is so thin
-    // that either face may be seen. That is so at silhouettes, where front and back meet, and where a coarse surface passes
-    // through itself.
+    // that either face may be seen, or a back misses the sample by less than corners are rounded. That is so at silhouettes,
+    // where front and back meet, and where a coarse surface passes through itself.
     std::vector<uint8_t> contested() const;
 
   private:

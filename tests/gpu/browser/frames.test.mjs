@@ -11,7 +11,7 @@ import { serve } from "./serve.mjs";
 const cases = process.env.GIM_GPU_CASES;
 const executablePath = process.env.GIM_CHROMIUM ?? "/usr/bin/chromium";
 const here = import.meta.dirname ?? new URL(".", import.meta.url).pathname;
-const close = 3; // of 255, as in tests/gpu/gpu_scene.h
+const close = 6; // of 255, as in tests/gpu/gpu_scene.h
 const skip = existsSync(executablePath) ? false : `no browser at ${executablePath}`;
 
 const swiftShader = [
