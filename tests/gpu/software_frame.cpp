@@ -25,7 +25,7 @@ Normal filtered(const SurfaceData& surface, double column, double row) {
     const double x = std::floor(column), y = std::floor(row);
     Normal sum{};
     for (int k = 0; k < 4; ++k) {
-        const double dx = k % 2, dy = k / 2;
+        const int dx = k % 2, dy = k / 2;
         const double weight = (dx > 0 ? column - x : 1 - column + x) * (dy > 0 ? row - y : 1 - row + y);
         const size_t i = static_cast<size_t>(clamped(y + dy, surface.map_height)) * surface.map_width +
                          static_cast<size_t>(clamped(x + dx, surface.map_width));
