@@ -30,10 +30,11 @@ declare -A may_include=(
     [corpus]=""
     [tools]="corpus tools/scene"
     [tools/scene]="tools tools/gpu"
+    [tools/gpu]=""
     [tools/rd]="tools corpus"
     [tools/train]="format decoder/squares encoder/tiles"
 )
-readonly MOST_LINES=500
+readonly MOST_LINES=500 MOST_SHADER_LINES=150
 
 # Prints every include against the arrow. Public headers (gim/...) are everybody's.
 wrong_includes() {
@@ -50,6 +51,8 @@ wrong_includes() {
 long_files() {
     git ls-files 'format/*' 'decoder/*' 'encoder/*' 'tools/*' 'corpus/*' | grep -E '\.(h|hpp|cpp)$' | xargs wc -l |
         awk -v most="$MOST_LINES" '$2 != "total" && $1 > most { print $2 " has " $1 " lines" }'
+    git ls-files 'decoder/shaders/*' | grep -v '\.md$' | xargs wc -l |
+        awk -v most="$MOST_SHADER_LINES" '$2 != "total" && $1 > most { print $2 " has " $1 " lines" }'
 }
 
 mode=${1:-}

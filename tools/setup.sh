@@ -11,6 +11,12 @@ readonly GIM_BUILD_PACKAGES=(
     libgtest-dev
 )
 
+# Of `tools/test.sh gpu`. The browser and node come from anywhere.
+readonly GIM_GPU_PACKAGES=(
+    g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev
+    libepoxy-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
+)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2

@@ -1,11 +1,45 @@
 #!/usr/bin/env bash
 # Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
-# Usage: bash tools/test.sh
+# Usage: bash tools/test.sh         all of this
+#        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 readonly FUZZ_SECONDS=${GIM_FUZZ_SECONDS:-20} # per target
+
+# Frames of WebGPU. Skips, and says so, where there is no browser to be had.
+test_in_browser() {
+    local name folder="$GIM_ROOT/tests/gpu/browser" cases="$GIM_ROOT/build/gpu/cases"
+    for name in node:nodejs npm:npm chromium:chromium; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") ||
+            { say "Skipped: no ${name%%:*}, so WebGPU stays untested" && return 0; }
+    done
+    say "Frames by WebGPU"
+    rm -rf "$cases"
+    "$GIM_ROOT/build/gpu/tests/gpu/write_buffers" "$cases" || die "write_buffers failed"
+    cd "$folder"
+    [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund || die "npm ci failed"
+    GIM_GPU_CASES="$cases" GIM_CHROMIUM="$(command -v chromium)" node --test --test-reporter=spec ||
+        die "the tests in the browser failed"
+}
+
+test_gpu() {
+    local name
+    install_packages "${GIM_GPU_PACKAGES[@]}"
+    configure_and_build gpu
+    say "Frames by OpenGL"
+    for name in gpu_data_test gpu_test; do
+        "$GIM_ROOT/build/gpu/tests/gpu/$name" --gtest_brief=1 || die "$name failed"
+    done
+    (test_in_browser)
+}
+
+case "${1:-}" in
+    "") ;;
+    gpu) test_gpu && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gpu]" ;;
+esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
 bash "$GIM_ROOT/tools/lint.sh" --format-only
