@@ -197,6 +197,7 @@ TEST(EncodeImage, AuthorsBunnyIsClosedWithItsFourLeavesWithinTheBytesAsked) {
     EXPECT_EQ(image.sideband.paths.size(), 10u);
     EncodeOptions options;
     options.rate = {RateTarget::Kind::kBytes, 6000};
+    options.fit = FitStrength::kStiff;
     const auto encoded = encode_image(planes, 257, 2e-6, options);
     ASSERT_TRUE(encoded.ok()) << encoded.error().message;
     EXPECT_LE(encoded.value().bytes.size(), 6000u);
