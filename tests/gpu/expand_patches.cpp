@@ -83,9 +83,10 @@ std::vector<SoftTriangle> placed(std::span<const SampleTriangle> triangles, cons
         for (size_t k = 0; k < 3; ++k) {
             const Sample& at = triangles[i][k];
             out[i].positions[k] = position_of(surface, at);
-            for (size_t a = 0; a < 2; ++a)
-                out[i].texels[k][a] =
-                    at[a] / surface.slot * surface.slot_texels[a] + at[a] % surface.slot * surface.interval_texels[a];
+            for (size_t a = 0; a < 2; ++a) {
+                const uint32_t tile = at[a] / surface.slot, in_tile = at[a] % surface.slot;
+                out[i].texels[k][a] = tile * surface.slot_texels[a] + in_tile * surface.interval_texels[a];
+            }
         }
     }
     return out;

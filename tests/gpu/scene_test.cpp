@@ -35,7 +35,8 @@ class Scene : public GpuTest {
             const Model& model = models_[domain];
             ShaderInstance instance;
             const double scale = 1 / model.radius;
-            const std::array<double, 3> place = {2.2 * (i % 4) - 3.3, 0.4 * (i % 3) - 0.4, -2.5 * (i / 4)};
+            const uint32_t row = i / 4;
+            const std::array<double, 3> place = {2.2 * (i % 4) - 3.3, 0.4 * (i % 3) - 0.4, -2.5 * row};
             instance.transform = placed_at(between(random, 0, 6), scale, place);
             for (size_t a = 0; a < 3; ++a) {
                 double centre = instance.transform[12 + a];
