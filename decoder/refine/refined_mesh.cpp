@@ -22,6 +22,7 @@ RefinedMesh::RefinedMesh(const QuadDomain* domain, uint32_t most_triangles, Aren
     half_edge_ = arena->take<uint32_t>(vertices);
     level_ = arena->take<uint8_t>(vertices);
     is_noted_ = arena->take<uint8_t>(most_);
+    patience_ = arena->take<uint16_t>(most_);
     triangles_noted_ = arena->take<uint32_t>(most_);
     vertices_noted_ = arena->take<uint32_t>(vertices);
 }
@@ -279,6 +280,7 @@ void RefinedMesh::set_level(uint32_t vertex, uint8_t level) {
 }
 
 void RefinedMesh::note_triangle(uint32_t triangle) {
+    patience_[triangle] = 0;
     if (is_noted_[triangle]) return;
     is_noted_[triangle] = 1;
     triangles_noted_[triangle_notes_++] = triangle;

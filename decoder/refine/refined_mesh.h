@@ -97,6 +97,10 @@ class RefinedMesh {
     bool weld(uint32_t vertex);
     bool may_weld(uint32_t vertex) const;
 
+    // A number for each triangle, for who refines. It becomes 0 where a split or weld changes the triangle.
+    uint16_t patience(uint32_t triangle) const { return patience_[triangle]; }
+    void set_patience(uint32_t triangle, uint16_t patience) { patience_[triangle] = patience; }
+
     // Valid until the next split or weld. Cost: O(changes).
     MeshChanges take_changes();
 
@@ -134,6 +138,7 @@ class RefinedMesh {
     uint32_t* half_edge_;  // per vertex
     uint8_t* level_;       // per vertex, with marks of the changes
     uint8_t* is_noted_;    // per triangle
+    uint16_t* patience_;   // per triangle
     uint32_t *triangles_noted_, *vertices_noted_;
     uint32_t triangle_notes_ = 0, vertex_notes_ = 0, count_before_ = 0;
 };

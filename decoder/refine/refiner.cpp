@@ -62,6 +62,91 @@ float Needs::of(uint32_t vertex) const {
     return std::min(need, kMostNeed);
 }
 
+bool Needs::follow_the_eye() const {
+    return pixels_ > 0 && !has_box_ && rule_.sphere[3] == 0 && rule_.plane_count == 0 && !rule_.need;
+}
+
+float Needs::distance_to_eye(const SampleValue& value) const {
+    return std::sqrt(squared_distance(value.position, rule_.eye)) - value.radius;
+}
+
+// The need is error * pixels / distance, so it crosses a bound where the distance is error * pixels / bound.
+float Needs::room_to_stay(uint32_t vertex) const {
+    const SampleValue& value = domain_.value(vertex);
+    if (value.error * per_unit_ >= keep_) return kMostNeed;
+    return value.error * pixels_ / keep_ - distance_to_eye(value);
+}
+float Needs::room_to_stay_away(uint32_t vertex) const {
+    const SampleValue& value = domain_.value(vertex);
+    if (value.error * per_unit_ > 1) return -1;
+    if (value.error == 0) return kMostNeed;
+    return distance_to_eye(value) - value.error * pixels_;
+}
+
+// ---- patience -------------------------------------------------------------------------------------------------------
+
+namespace {
+
+constexpr float kStepsOfMesh = 1024;         // along the diagonal of the base's box
+constexpr uint32_t kMostSteps = UINT16_MAX;  // that a triangle can wait
+constexpr float kStepsUntilRebase = 4096;
+constexpr float kCaution = 0.99f;  // for the rounding of distances
+
+float diagonal_of_base(const RefinedMesh& mesh) {
+    const QuadDomain& domain = mesh.domain();
+    float low[3] = {kMostNeed, kMostNeed, kMostNeed}, high[3] = {-kMostNeed, -kMostNeed, -kMostNeed};
+    for (uint32_t h = 0; h < 4 * domain.shape().tiles; ++h) {
+        const float* p = domain.value(domain.glue().corner[h]).position;
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    return std::sqrt(squared_distance(low, high));
+}
+
+bool differ_in_more_than_the_eye(const gim_rule& a, const gim_rule& b) {
+    return a.pixel_error != b.pixel_error || a.pixels_per_unit != b.pixels_per_unit ||
+           a.object_error != b.object_error || a.keep != b.keep;
+}
+
+}  // namespace
+
+void Patience::begin(const Needs& needs, const gim_rule& rule, RefinedMesh* mesh) {
+    if (!mesh_) step_ = diagonal_of_base(*mesh) / kStepsOfMesh;
+    const bool goes_on = is_on_ && !differ_in_more_than_the_eye(rule, last_);
+    const float moved = std::sqrt(squared_distance(rule.eye, last_.eye)) / step_;
+    mesh_ = mesh;
+    last_ = rule;
+    is_on_ = needs.follow_the_eye() && step_ > 0;
+    if (!is_on_) return;
+    if (!goes_on || !(moved < kMostSteps)) return forget();
+    travel_ += moved;
+    if (travel_ > kStepsUntilRebase) rebase();
+    travelled_ = static_cast<uint32_t>(std::ceil(travel_));
+}
+
+void Patience::forget() {
+    for (uint32_t f = 0; f < mesh_->triangle_count(); ++f) mesh_->set_patience(f, 0);
+    travel_ = 0;
+    travelled_ = 0;
+}
+
+void Patience::rebase() {
+    const auto passed = static_cast<uint32_t>(std::ceil(travel_));
+    for (uint32_t f = 0; f < mesh_->triangle_count(); ++f) {
+        const uint32_t left = mesh_->patience(f) > passed ? mesh_->patience(f) - passed : 0;
+        mesh_->set_patience(f, static_cast<uint16_t>(left));
+    }
+    travel_ = 0;
+}
+
+void Patience::wait(uint32_t triangle, float room) {
+    const float until = travel_ + kCaution * room / step_;
+    const float whole = std::clamp(until, 0.0f, static_cast<float>(kMostSteps));
+    mesh_->set_patience(triangle, static_cast<uint16_t>(whole));
+}
+
 // ---- queue ----------------------------------------------------------------------------------------------------------
 
 void NeedQueue::push(Entry entry) {
@@ -98,6 +183,7 @@ Refiner::Refiner(RefinedMesh* mesh, Arena* arena) : mesh_(mesh) {
 
 bool Refiner::run(const gim_rule& rule, uint32_t most_operations) {
     const Needs needs(rule, mesh_->domain());
+    patience_.begin(needs, rule, mesh_);
     const uint32_t most =
         rule.most_triangles > 0 ? std::min(rule.most_triangles, mesh_->most_triangles()) : mesh_->most_triangles();
     // A need that changes from call to call must not keep it busy for ever.
@@ -117,6 +203,10 @@ bool Refiner::sweep(const Needs& needs, uint32_t most_triangles, uint32_t* opera
     for (bool changed = true; changed;) {
         changed = false;
         for (uint32_t f = 0; f < mesh_->triangle_count();) {
+            if (patience_.may_wait(f)) {
+                ++f;
+                continue;
+            }
             const uint32_t v = mesh_->vertex(3 * f + 2);
             if (mesh_->level(v) == 0 || !is_last_of_vertex(f) || needs.of(v) >= needs.keep() || !mesh_->weld(v)) {
                 ++f;
@@ -129,8 +219,13 @@ bool Refiner::sweep(const Needs& needs, uint32_t most_triangles, uint32_t* opera
     for (bool changed = true; changed;) {
         changed = false;
         for (uint32_t f = 0; f < mesh_->triangle_count();) {
-            const uint32_t middle = mesh_->stands_for_split(f) ? mesh_->middle_of(f) : kNoHalfEdge;
-            if (middle == kNoHalfEdge || needs.of(middle) <= 1) {
+            if (patience_.may_wait(f)) {
+                ++f;
+                continue;
+            }
+            const uint32_t middle = mesh_->middle_of(f);
+            if (!mesh_->stands_for_split(f) || middle == kNoHalfEdge || needs.of(middle) <= 1) {
+                let_wait(needs, f, middle);
                 ++f;
                 continue;
             }
@@ -141,6 +236,15 @@ bool Refiner::sweep(const Needs& needs, uint32_t most_triangles, uint32_t* opera
         }
     }
     return true;
+}
+
+// Whatever part a triangle has at its vertex and its first edge, nothing happens there before the eye has come so far.
+void Refiner::let_wait(const Needs& needs, uint32_t triangle, uint32_t middle) {
+    if (!patience_.is_on()) return;
+    const uint32_t v = mesh_->vertex(3 * triangle + 2);
+    float room = middle != kNoHalfEdge ? needs.room_to_stay_away(middle) : kMostNeed;
+    if (mesh_->level(v) > 0) room = std::min(room, needs.room_to_stay(v));
+    patience_.wait(triangle, room);
 }
 
 void Refiner::queue_split(const Needs& needs, uint32_t triangle) {

@@ -19,9 +19,17 @@ class Needs {
 
     float of(uint32_t vertex) const;
     float keep() const { return keep_; }
+    // Whether needs depend on the eye and on the vertex alone.
+    bool follow_the_eye() const;
+    // How far the eye may move, at least, until a vertex that is there may go, or one that is not must come. Below 0: now.
+    // follow_the_eye() holds.
+    float room_to_stay(uint32_t vertex) const;
+    float room_to_stay_away(uint32_t vertex) const;
 
   private:
     bool is_outside(const SampleValue& value) const;
+
+    float distance_to_eye(const SampleValue& value) const;
 
     const gim_rule& rule_;
     const QuadDomain& domain_;
@@ -51,6 +59,29 @@ class NeedQueue {
     uint32_t room_ = 0, count_ = 0;
 };
 
+// Which triangles need not be looked at again, because the eye has not come far enough to change what holds for them. Far
+// ones wait long. Distances are counted in steps of a length that fits the mesh.
+class Patience {
+  public:
+    // To be called before a rule is applied to the mesh. Forgets all if more than the eye has changed.
+    void begin(const Needs& needs, const gim_rule& rule, RefinedMesh* mesh);
+
+    bool may_wait(uint32_t triangle) const { return is_on_ && mesh_->patience(triangle) > travelled_; }
+    // The triangle stays as it is until the eye has moved so far.
+    void wait(uint32_t triangle, float room);
+    bool is_on() const { return is_on_; }
+
+  private:
+    void forget();
+    void rebase();
+
+    RefinedMesh* mesh_ = nullptr;
+    gim_rule last_{};
+    float step_ = 0, travel_ = 0;  // length of a step; steps that the eye has come
+    uint32_t travelled_ = 0;       // the same, rounded up
+    bool is_on_ = false;
+};
+
 class Refiner {
   public:
     // Takes room for queues from the arena.
@@ -69,8 +100,11 @@ class Refiner {
     void split_and_queue(const Needs& needs, uint32_t triangle);
     void weld_and_queue(const Needs& needs, uint32_t vertex);
 
+    void let_wait(const Needs& needs, uint32_t triangle, uint32_t middle);
+
     RefinedMesh* mesh_;
     NeedQueue splits_, welds_;
+    Patience patience_;
 };
 
 }  // namespace gim

@@ -40,6 +40,16 @@ void GlExpand::expand(GlSurface& surface) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+void GlExpand::set_triangles(std::span<const std::array<uint32_t, 4>> triangles) {
+    const auto count = static_cast<uint32_t>(triangles.size());
+    if (count > capacity_) set_capacity(count);
+    triangles_.write(triangles);
+    ShaderDraw command;
+    command.vertex_count = 3 * count;
+    command.needed = count;
+    command_.write(std::span<const ShaderDraw>(&command, 1));
+}
+
 void GlExpand::draw(GlSurface& surface) const {
     surface.bind(capacity_);
     triangles_.bind(GL_SHADER_STORAGE_BUFFER, 5);

@@ -20,6 +20,9 @@ class GlExpand {
     // Draws the triangles into the current frame.
     void draw(GlSurface& surface) const;
 
+    // Takes triangles as they are, in place of expanding patches: three samples (row << 16 | column) and the instance.
+    void set_triangles(std::span<const std::array<uint32_t, 4>> triangles);
+
     // Triangles that the last expansion needed; those beyond the capacity are not drawn. Waits for the GPU.
     uint32_t needed() const;
     void set_capacity(uint32_t capacity);

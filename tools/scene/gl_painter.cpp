@@ -17,7 +17,8 @@
 namespace gim {
 namespace {
 
-constexpr uint32_t kFirstCapacity = 1u << 20;  // triangles
+constexpr uint32_t kFirstCapacity = 1u << 20;                      // triangles
+constexpr std::array<float, 4> kInside = {0.35f, 0.3f, 0.25f, 1};  // of open surfaces
 constexpr std::array<float, 4> kSky = {0.16f, 0.18f, 0.22f, 1};
 
 class GlPainter final : public ScenePainter {
@@ -43,6 +44,8 @@ class GlPainter final : public ScenePainter {
     std::string renderer() const override { return context_.renderer(); }
 
     void upload(const SceneLod& lod, LodWay way, const CameraKey& camera, const FramePatches& patches) override {
+        is_expanded_ = patches.levels.empty();
+        if (!is_expanded_) take_levels(patches);
         InstancedPatches list;
         for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
             const std::span<const gim_patch> of_instance(patches.patches.data() + patches.first[i],
@@ -51,12 +54,14 @@ class GlPainter final : public ScenePainter {
         }
         surface_.set_patches(list);
         surface_.set_instances(instances(lod, way, camera));
-        surface_.set_view(view_of(camera_of(camera), scene_.pixel_error));
+        ShaderView view = view_of(camera_of(camera), scene_.pixel_error);
+        view.back = kInside;
+        surface_.set_view(view);
         glFinish();
     }
 
     Result<uint64_t> draw() override {
-        expand_.expand(surface_);
+        if (is_expanded_) expand_.expand(surface_);
         if (const uint32_t needed = expand_.needed(); needed > expand_.capacity()) {
             expand_.set_capacity(needed + needed / 4);
             expand_.expand(surface_);
@@ -89,6 +94,16 @@ class GlPainter final : public ScenePainter {
           expand_(std::move(expand)),
           frame_(std::move(frame)) {}
 
+    // Puts the triangles of the chosen levels where expanded ones would be.
+    void take_levels(const FramePatches& patches) {
+        std::vector<std::array<uint32_t, 4>> triangles;
+        triangles.reserve(patches.triangles);
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            const auto& level = surfaces_[scene_.instances[i].mesh].levels()[patches.levels[i]];
+            for (const auto& t : level.triangles) triangles.push_back({t[0], t[1], t[2], i});
+        }
+        expand_.set_triangles(triangles);
+    }
     std::vector<ShaderInstance> instances(const SceneLod& lod, LodWay way, const CameraKey& camera) const {
         std::vector<ShaderInstance> list;
         for (size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -134,6 +149,7 @@ class GlPainter final : public ScenePainter {
     GlSurface surface_;
     GlExpand expand_;
     GlFrame frame_;
+    bool is_expanded_ = true;  // patches; else triangles as they are
 };
 
 }  // namespace

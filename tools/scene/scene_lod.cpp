@@ -1,6 +1,7 @@
 #include "tools/scene/scene_lod.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -80,6 +81,7 @@ Result<void> SceneLod::begin() {
                                             " has more triangles in its base than instance_triangles allows"};
         meshes_.push_back(mesh);
     }
+    listed_.resize(meshes_.size());
     return {};
 }
 
@@ -91,13 +93,15 @@ double SceneLod::distance(size_t instance, const CameraKey& camera) const {
     return std::max(to_middle - radius, 1e-6 * radius);
 }
 
-void SceneLod::take_level(size_t instance, const SceneSurface::DiscreteLevel& level, FramePatches* out) {
-    out->patches.insert(out->patches.end(), level.patches.begin(), level.patches.end());
-    out->triangles += level.triangles;
-    out->first[instance + 1] = static_cast<uint32_t>(out->patches.size());
+void SceneLod::list(size_t instance, uint32_t triangles) {
+    if (room_.size() < 2 * size_t{triangles}) room_.resize(2 * size_t{triangles});
+    uint32_t patches = 0;
+    (void)gim_read_patches(meshes_[instance], room_.data(), static_cast<uint32_t>(room_.size()), &patches);
+    listed_[instance].assign(room_.begin(), room_.begin() + patches);
 }
 
 void SceneLod::refine(const CameraKey& camera, FramePatches* out) {
+    const auto start = std::chrono::steady_clock::now();
     for (size_t i = 0; i < meshes_.size(); ++i) {
         const std::array<double, 3> eye = placements_[i].to_mesh(camera.eye);
         gim_rule rule{};
@@ -106,12 +110,15 @@ void SceneLod::refine(const CameraKey& camera, FramePatches* out) {
         rule.pixels_per_unit = static_cast<float>(pixels_per_unit_);
         for (size_t k = 0; k < 3; ++k) rule.eye[k] = static_cast<float>(eye[k]);
         (void)gim_refine(meshes_[i], &rule, 0, nullptr);
-        uint32_t triangles = 0, patches = 0;
-        (void)gim_refined_triangles(meshes_[i], &triangles);
-        out->triangles += triangles;
-        if (room_.size() < 2 * size_t{triangles}) room_.resize(2 * size_t{triangles});
-        (void)gim_read_patches(meshes_[i], room_.data(), static_cast<uint32_t>(room_.size()), &patches);
-        out->patches.insert(out->patches.end(), room_.begin(), room_.begin() + patches);
+    }
+    out->refining = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    for (size_t i = 0; i < meshes_.size(); ++i) {
+        gim_changes changes;
+        gim_take_changes(meshes_[i], &changes);
+        if (changes.changed_count > 0 || changes.triangles_before != changes.triangle_count)
+            list(i, changes.triangle_count);
+        out->triangles += changes.triangle_count;
+        out->patches.insert(out->patches.end(), listed_[i].begin(), listed_[i].end());
         out->first[i + 1] = static_cast<uint32_t>(out->patches.size());
     }
     out->largest_error = pixel_error_;
@@ -129,16 +136,23 @@ void SceneLod::choose(LodWay way, const CameraKey& camera, FramePatches* out) {
     out->first.assign(meshes_.size() + 1, 0);
     out->triangles = 0;
     out->largest_error = 0;
+    out->levels.clear();
     if (way == LodWay::kAdaptive) return refine(camera, out);
     for (size_t i = 0; i < meshes_.size(); ++i) {
         const SceneSurface& surface = surfaces_[scene_.instances[i].mesh];
+        if (way == LodWay::kFull) {
+            out->patches.insert(out->patches.end(), surface.finest_patches().begin(), surface.finest_patches().end());
+            out->triangles += surface.finest_triangles();
+            out->first[i + 1] = static_cast<uint32_t>(out->patches.size());
+            continue;
+        }
         const double pixels = pixels_per_unit_ * placements_[i].scale / distance(i, camera);
         size_t level = 0;
-        while (way == LodWay::kDiscrete && level + 1 < surface.levels().size() &&
-               surface.levels()[level + 1].error * pixels <= scene_.pixel_error)
+        while (level + 1 < surface.levels().size() && surface.levels()[level + 1].error * pixels <= scene_.pixel_error)
             ++level;
         out->largest_error = std::max(out->largest_error, surface.levels()[level].error * pixels);
-        take_level(i, surface.levels()[level], out);
+        out->levels.push_back(static_cast<uint8_t>(level));
+        out->triangles += surface.levels()[level].triangles.size();
     }
 }
 

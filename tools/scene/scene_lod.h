@@ -24,8 +24,10 @@ Placement placement_of(const SceneInstance& instance, const SceneSurface& surfac
 struct FramePatches {
     std::vector<gim_patch> patches;
     std::vector<uint32_t> first;  // per instance, and the end
+    std::vector<uint8_t> levels;  // per instance: the discrete level; then there are no patches
     uint64_t triangles = 0;       // of the meshes that the patches stand for
     double largest_error = 0;     // pixels, of the instance that errs most
+    double refining = 0;          // milliseconds of the whole that refining took; the rest lists patches
 };
 
 enum class LodWay { kAdaptive, kFull, kDiscrete };
@@ -36,7 +38,7 @@ class SceneLod {
     static Result<std::unique_ptr<SceneLod>> create(const Scene& scene, const std::vector<SceneSurface>& surfaces);
 
     // Adaptive: refines all instances for the camera. Where they would have more triangles than the scene allows, all err a
-    // little more. Discrete: each instance takes the coarsest level that errs less than the scene allows. Full: level 0.
+    // little more. Discrete: each instance takes the coarsest mesh that errs less than the scene allows. Full: all samples.
     void choose(LodWay way, const CameraKey& camera, FramePatches* out);
 
     const Placement& placement(size_t instance) const { return placements_[instance]; }
@@ -49,7 +51,7 @@ class SceneLod {
     SceneLod(const Scene& scene, const std::vector<SceneSurface>& surfaces);
     Result<void> begin();
     void refine(const CameraKey& camera, FramePatches* out);
-    void take_level(size_t instance, const SceneSurface::DiscreteLevel& level, FramePatches* out);
+    void list(size_t instance, uint32_t triangles);
     double distance(size_t instance, const CameraKey& camera) const;  // to the ball around it, above 0
 
     const Scene& scene_;
@@ -57,7 +59,8 @@ class SceneLod {
     std::vector<Placement> placements_;
     std::vector<AlignedMemory> memory_;
     std::vector<gim_refined*> meshes_;
-    std::vector<gim_patch> room_;  // for the patches of one instance
+    std::vector<gim_patch> room_;                 // for the patches of one instance
+    std::vector<std::vector<gim_patch>> listed_;  // per instance, as long as its mesh does not change
     double pixels_per_unit_ = 1, pixel_error_ = 1;
     uint64_t bytes_ = 0;
 };

@@ -31,7 +31,9 @@ struct Runner {
         for (uint32_t frame = 0; frame < scene.frames; ++frame) {
             FrameFigures f;
             const CameraKey camera = scene.camera(frame);
-            f.refine = time_of([&] { lod.choose(way, camera, &patches); });
+            const double chosen = time_of([&] { lod.choose(way, camera, &patches); });
+            f.refine = way == LodWay::kAdaptive ? patches.refining : chosen;
+            f.list = chosen - f.refine;
             f.triangles = patches.triangles;
             f.patches = patches.patches.size();
             f.pixel_error = patches.largest_error;

@@ -14,12 +14,12 @@ namespace gim {
 
 // Milliseconds of a frame, and what was drawn.
 struct FrameFigures {
-    double refine = 0, upload = 0, draw = 0;
+    double refine = 0, list = 0, upload = 0, draw = 0;
     uint64_t triangles = 0;  // that the CPU decided on
     uint64_t drawn = 0;      // that the GPU drew; 0 if nothing was drawn
     uint64_t patches = 0;
     double pixel_error = 0;
-    double total() const { return refine + upload + draw; }
+    double total() const { return refine + list + upload + draw; }
 };
 
 struct SceneFigures {

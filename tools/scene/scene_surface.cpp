@@ -1,5 +1,7 @@
 #include "tools/scene/scene_surface.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,68 +28,71 @@ gim_status SceneSurface::open() {
                            scratch.get(), scratch.size(), &domain_);
 }
 
-namespace {
-
-// The vertices of every 2^level-th sample, and how far the others are.
-struct Kept {
-    std::vector<uint8_t> fineness;  // per vertex: the coarsest level that has it
-    uint32_t level = 0;
-
-    static float need(void* user, uint32_t vertex, const float*, float, float) {
-        const auto& kept = *static_cast<const Kept*>(user);
-        return kept.fineness[vertex] >= kept.level ? 2.0f : 0.0f;
-    }
-};
-
-// The coarsest level that has a sample at this row or column of a tile.
-uint8_t level_of(uint32_t at, uint32_t intervals) {
-    uint8_t level = 0;
-    while ((1u << (level + 1)) <= intervals && at % (1u << (level + 1)) == 0) ++level;
-    return level;
-}
-
-}  // namespace
-
-gim_status SceneSurface::make_levels() {
+gim_status SceneSurface::refine_all() {
     const auto most = static_cast<uint32_t>(std::min<uint64_t>(shape_.most_triangles, UINT32_MAX / 4));
     AlignedMemory memory(gim_refined_size(domain_, most));
     gim_refined* mesh = nullptr;
     gim_status status = gim_begin_refined(domain_, most, memory.get(), memory.size(), &mesh);
     if (status != GIM_OK) return status;
-    Kept kept;
-    kept.fineness.assign(shape_.vertex_count, 0);
     gim_rule rule{};
-    rule.need = Kept::need;
-    rule.user = &kept;
-    // The finest mesh tells where each vertex lies.
+    rule.need = [](void*, uint32_t, const float*, float, float) { return 2.0f; };
     status = gim_refine(mesh, &rule, 0, nullptr);
     if (status != GIM_OK) return status;
+    const uint32_t* triangles = gim_refined_triangles(mesh, &finest_triangles_);
+    indices_.assign(triangles, triangles + 3 * size_t{finest_triangles_});
     uint32_t count = 0;
-    (void)gim_refined_triangles(mesh, &count);
-    for (uint32_t h = 0; h < 3 * count; ++h) {
+    finest_patches_.resize(2 * size_t{finest_triangles_});
+    status = gim_read_patches(mesh, finest_patches_.data(), 2 * finest_triangles_, &count);
+    finest_patches_.resize(count);
+    sample_of_.resize(shape_.vertex_count);
+    const uint32_t slot = info_.layout == GIM_LAYOUT_TILES ? shape_.intervals + 1 : shape_.intervals;
+    const uint32_t columns = shape_.width / slot;
+    for (uint32_t h = 0; h < 3 * finest_triangles_; ++h) {
         gim_half_edge edge;
         (void)gim_read_half_edge(mesh, h, &edge);
-        kept.fineness[edge.vertex] =
-            std::min(level_of(edge.start[0], shape_.intervals), level_of(edge.start[1], shape_.intervals));
+        const uint32_t row = edge.tile / columns * slot + edge.start[0];
+        sample_of_[edge.vertex] = row << 16 | (edge.tile % columns * slot + edge.start[1]);
     }
-    for (; kept.level < kDiscreteLevels && (shape_.intervals >> kept.level) > 0; ++kept.level) {
-        status = gim_refine(mesh, &rule, 0, nullptr);
-        if (status != GIM_OK) return status;
+    return status;
+}
+
+namespace {
+
+constexpr uint32_t kSamplesOfError = 100000;
+constexpr double kShareOfLevel = 0.25;  // of the triangles of the level before
+
+TriangleMesh mesh_of(const std::vector<float>& positions, const std::vector<uint32_t>& indices) {
+    TriangleMesh mesh;
+    for (size_t i = 0; i < positions.size(); i += 3)
+        mesh.positions.push_back({positions[i], positions[i + 1], positions[i + 2]});
+    for (size_t i = 0; i < indices.size(); i += 3)
+        mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    return mesh;
+}
+
+}  // namespace
+
+Result<void> SceneSurface::simplify() {
+    const TriangleMesh finest = mesh_of(positions_, indices_);
+    double share = 1;
+    for (uint32_t l = 0; l < kDiscreteLevels; ++l, share *= kShareOfLevel) {
+        std::vector<uint32_t> kept = indices_;
         DiscreteLevel level;
-        (void)gim_refined_triangles(mesh, &level.triangles);
-        level.patches.resize(2 * size_t{level.triangles});
-        uint32_t patches = 0;
-        status = gim_read_patches(mesh, level.patches.data(), 2 * level.triangles, &patches);
-        if (status != GIM_OK) return status;
-        level.patches.resize(patches);
-        for (uint32_t v = 0; v < shape_.vertex_count; ++v) {
-            float error = 0, radius = 0;
-            gim_vertex_worth(domain_, v, &error, &radius);
-            if (kept.fineness[v] < kept.level) level.error = std::max(level.error, double{error});
+        if (l > 0) {
+            const auto wanted = static_cast<size_t>(share * finest_triangles_) * 3;
+            kept.resize(meshopt_simplify(kept.data(), indices_.data(), indices_.size(), positions_.data(),
+                                         shape_.vertex_count, 3 * sizeof(float), wanted, 1.0f, 0, nullptr));
+            CompareOptions options;
+            options.samples = kSamplesOfError;
+            const Result<Comparison> compared = compare(finest, mesh_of(positions_, kept), options);
+            if (!compared.ok()) return compared.error();
+            level.error = compared.value().hausdorff;
         }
+        for (size_t i = 0; i < kept.size(); i += 3)
+            level.triangles.push_back({sample_of_[kept[i]], sample_of_[kept[i + 1]], sample_of_[kept[i + 2]]});
         levels_.push_back(std::move(level));
     }
-    return GIM_OK;
+    return {};
 }
 
 Result<SceneSurface> SceneSurface::read(const std::string& path) {
@@ -96,10 +101,11 @@ Result<SceneSurface> SceneSurface::read(const std::string& path) {
     SceneSurface s;
     s.file_ = std::move(file.value());
     gim_status status = s.open();
-    if (status == GIM_OK) status = s.make_levels();
+    if (status == GIM_OK) status = s.refine_all();
     if (status == GIM_BAD_ARGUMENT)
         return Error{Stage::kInput, "charts cannot be refined; encode with --layout tiles or gim"};
     if (status != GIM_OK) return Error{Stage::kInput, describe_status(status)};
+    if (const Result<void> simplified = s.simplify(); !simplified.ok()) return simplified.error();
     std::array<double, 3> low, high;
     low.fill(HUGE_VAL);
     high.fill(-HUGE_VAL);

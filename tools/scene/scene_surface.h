@@ -43,18 +43,23 @@ class SceneSurface {
     double longest_side() const { return longest_side_; }
     double radius() const { return radius_; }  // of a ball around the middle
 
-    // A level that an engine would keep as a mesh of its own: every 2^level-th sample.
+    // The mesh of all samples.
+    const std::vector<gim_patch>& finest_patches() const { return finest_patches_; }
+    uint32_t finest_triangles() const { return finest_triangles_; }
+
+    // A mesh that an engine would keep for one distance: level 0, then simplified to a quarter again and again by
+    // meshoptimizer, which keeps a part of the vertices.
     struct DiscreteLevel {
-        double error = 0;  // object units: how far it is from the samples that it leaves out
-        uint32_t triangles = 0;
-        std::vector<gim_patch> patches;
+        double error = 0;  // object units: the largest distance to level 0 that sampling found, both ways
+        std::vector<std::array<uint32_t, 3>> triangles;  // samples: row << 16 | column
     };
     const std::vector<DiscreteLevel>& levels() const { return levels_; }
 
   private:
     SceneSurface() = default;
     gim_status open();
-    gim_status make_levels();
+    gim_status refine_all();
+    Result<void> simplify();
 
     Bytes file_;
     gim_info info_{};
@@ -64,6 +69,10 @@ class SceneSurface {
     const gim_domain* domain_ = nullptr;
     std::array<double, 3> middle_ = {};
     double longest_side_ = 0, radius_ = 0;
+    std::vector<gim_patch> finest_patches_;
+    uint32_t finest_triangles_ = 0;
+    std::vector<uint32_t> indices_;    // of the mesh of all samples
+    std::vector<uint32_t> sample_of_;  // per vertex, one of its samples
     std::vector<DiscreteLevel> levels_;
 };
 

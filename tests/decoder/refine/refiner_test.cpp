@@ -54,6 +54,35 @@ TEST(Refiner, VerticesWhoseErrorIsTooLargeAreThereAndNoOthers) {
     }
 }
 
+// What need not be looked at again changes nothing: the mesh is that of a rule which looks at everything, frame by frame.
+TEST(Refiner, PatienceChangesNothing) {
+    for (const char* name : kRefinables) {
+        SCOPED_TRACE(name);
+        Refinable patient(name), eager(name);
+        Random random(17);
+        gim_rule rule{};
+        rule.pixels_per_unit = 200;
+        const float size = std::abs(patient.positions[0]) + 1;
+        float* eye = rule.eye;
+        for (size_t k = 0; k < 3; ++k) eye[k] = patient.positions[k] + 20 * size;
+        float speed[3] = {};
+        for (int frame = 0; frame < 400; ++frame) {
+            // Small steps, sometimes a jump, sometimes another rule.
+            for (size_t k = 0; k < 3; ++k) {
+                speed[k] += static_cast<float>(between(random, -0.01, 0.01)) * size;
+                eye[k] += speed[k] + (frame % 97 == 96 ? 5 * size : 0);
+                if (std::abs(eye[k] - patient.positions[k]) > 25 * size) speed[k] = -0.5f * speed[k];
+            }
+            rule.pixel_error = frame % 150 < 100 ? 1.0f : 2.0f;
+            gim_rule looks_at_all = rule;
+            looks_at_all.need = [](void*, uint32_t, const float*, float, float) { return 0.0f; };
+            ASSERT_EQ(gim_refine(patient.mesh, &rule, 0, nullptr), GIM_OK);
+            ASSERT_EQ(gim_refine(eager.mesh, &looks_at_all, 0, nullptr), GIM_OK);
+            ASSERT_EQ(patient.faces(), eager.faces()) << frame;
+        }
+    }
+}
+
 TEST(Refiner, ACoarserRuleWeldsAndAFinerOneSplits) {
     Refinable r("tiles-cube-lossy");
     const float error = middle_error(r);
