@@ -21,6 +21,7 @@ Subcommand add_bench_scene(CLI::App& app) {
         "0]}],\n"
         "   \"frames\": 60, \"width\": 1280, \"height\": 720, \"field_of_view\": 50, \"pixel_error\": 1,\n"
         "   \"most_triangles\": 1000000, \"instance_triangles\": 20000, \"gpu_refines\": false}\n"
+        "A mesh whose y axis points up: {\"file\": \"bunny.gim\", \"up\": \"y\"}.\n"
         "In place of a grid: \"instances\": [{\"mesh\": 0, \"position\": [0, 0, 0], \"size\": 1, \"turn\": 90}, ...].\n"
         "Paths are relative to SCENE, +z is up, sizes are those of the longest side. With gpu_refines the CPU leaves\n"
         "four times the error, and the GPU halves the cells of instances where it would show.");

@@ -1,7 +1,6 @@
 #include "tools/details.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -40,10 +39,19 @@ struct DetailedSurface {
     const gim_domain* domain = nullptr;
     gim_refined* mesh = nullptr;
 
-    // The texel of the plane at a sample.
-    size_t texel(uint32_t row, uint32_t column) const {
-        const size_t y = size_t{row / slot * coarse_slot} * parts + row % slot;
-        return y * plane.width + size_t{column / slot * coarse_slot} * parts + column % slot;
+    uint32_t tile_columns() const { return shape.width / slot; }
+    // The place of a sample of a tile in the image, and of its texel in the plane.
+    size_t sample(uint32_t tile, uint32_t row, uint32_t column) const {
+        return (size_t{tile / tile_columns()} * slot + row) * shape.width + tile % tile_columns() * slot + column;
+    }
+    size_t texel(uint32_t tile, uint32_t row, uint32_t column) const {
+        const size_t y = size_t{tile / tile_columns() * coarse_slot} * parts + row;
+        return y * plane.width + size_t{tile % tile_columns() * coarse_slot} * parts + column;
+    }
+    // How far the sample is displaced.
+    float displacement(uint32_t tile, uint32_t row, uint32_t column) const {
+        const float* by = &displacements[3 * texel(tile, row, column)];
+        return std::sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     }
 };
 
@@ -74,23 +82,13 @@ gim_status open(Decoder& decoder, const Bytes& file, const DecodedImage& image, 
 
 // Which vertices the mesh needs: all samples of level 0, and those whose absence would show in the details.
 struct Needs {
-    std::vector<bool> is_sample;     // per vertex
-    float error = 0;                 // what may be left out
-    std::array<float, 3> low, high;  // of a box around all that is displaced
+    std::vector<bool> is_sample, is_near;  // per vertex; near: in a cell of level 0 where something is displaced
+    float error = 0;                       // what may be left out
 
-    static float need(void* user, uint32_t vertex, const float* position, float error, float radius) {
+    static float need(void* user, uint32_t vertex, const float*, float error, float) {
         const auto& n = *static_cast<const Needs*>(user);
         if (n.is_sample[vertex]) return 2;
-        for (size_t k = 0; k < 3; ++k) {
-            if (position[k] + radius < n.low[k] || position[k] - radius > n.high[k]) return 0;
-        }
-        return error / n.error;
-    }
-    void include(const float* position) {
-        for (size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], position[k]);
-            high[k] = std::max(high[k], position[k]);
-        }
+        return n.is_near[vertex] ? error / n.error : 0;
     }
 };
 
@@ -110,26 +108,45 @@ std::vector<uint32_t> vertices_of_samples(const DetailedSurface& d) {
     return vertices;
 }
 
+// Calls f(vertex, row, column) for the samples of the cell of level 0 whose first sample is at (row, column) of the tile.
+template <class F>
+void for_each_in_cell(const DetailedSurface& d, const std::vector<uint32_t>& vertex_at, uint32_t tile, uint32_t row,
+                      uint32_t column, const F& f) {
+    for (uint32_t r = row; r <= row + d.parts; ++r) {
+        for (uint32_t c = column; c <= column + d.parts; ++c) f(vertex_at[d.sample(tile, r, c)], r, c);
+    }
+}
+
+float largest_displacement(const DetailedSurface& d) {
+    float largest = 0;
+    for (size_t i = 0; i < d.displacements.size(); i += 3) {
+        const float* by = &d.displacements[i];
+        largest = std::max(largest, by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    }
+    return std::sqrt(largest);
+}
+
 Needs needs_of(const DetailedSurface& d) {
     Needs needs;
     needs.is_sample.resize(d.shape.vertex_count, false);
-    needs.low.fill(std::numeric_limits<float>::infinity());
-    needs.high.fill(-std::numeric_limits<float>::infinity());
+    needs.is_near.resize(d.shape.vertex_count, false);
     const std::vector<uint32_t> vertex_at = vertices_of_samples(d);
-    float largest = 0;
-    for (uint32_t y = 0; y < d.shape.height; ++y) {
-        for (uint32_t x = 0; x < d.shape.width; ++x) {
-            const uint32_t v = vertex_at[size_t{y} * d.shape.width + x];
-            if (v == UINT32_MAX) continue;
-            const uint32_t row = y % d.slot, column = x % d.slot;
-            needs.is_sample[v] = needs.is_sample[v] || (row % d.parts == 0 && column % d.parts == 0);
-            const float* by = &d.displacements[3 * d.texel(y, x)];
-            const float length = std::sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
-            if (length > 0) needs.include(&d.positions[3 * size_t{v}]);
-            largest = std::max(largest, length);
+    const uint32_t cells = d.shape.intervals / d.parts;
+    // The lossy code leaves next to nothing far around what was displaced: it is not worth a triangle.
+    needs.error = std::max(kErrorOfDepth * largest_displacement(d), std::numeric_limits<float>::min());
+    for (uint32_t t = 0; t < d.shape.tile_count; ++t) {
+        for (uint32_t cell = 0; cell < cells * cells; ++cell) {
+            const uint32_t row = cell / cells * d.parts, column = cell % cells * d.parts;
+            float most = 0;
+            for_each_in_cell(d, vertex_at, t, row, column, [&](uint32_t v, uint32_t r, uint32_t c) {
+                if (r % d.parts == 0 && c % d.parts == 0) needs.is_sample[v] = true;
+                most = std::max(most, d.displacement(t, r, c));
+            });
+            if (most <= needs.error) continue;
+            for_each_in_cell(d, vertex_at, t, row, column,
+                             [&](uint32_t v, uint32_t, uint32_t) { needs.is_near[v] = true; });
         }
     }
-    needs.error = std::max(kErrorOfDepth * largest, std::numeric_limits<float>::min());
     return needs;
 }
 
@@ -173,13 +190,11 @@ void take_surface(const DetailedSurface& d, DecodedImage* image) {
     out.grid_normals.assign(3 * samples, 0.0f);
     out.grid_texcoords.assign(2 * samples, 0.0f);
     std::vector<uint32_t> number(d.shape.vertex_count, UINT32_MAX);
-    const uint32_t columns = d.shape.width / d.slot;
     for (uint32_t h = 0; h < 3 * count; ++h) {
         gim_half_edge edge;
         (void)gim_read_half_edge(d.mesh, h, &edge);
-        const uint32_t row = edge.tile / columns * d.slot + edge.start[0];
-        const uint32_t column = edge.tile % columns * d.slot + edge.start[1];
-        const size_t sample = size_t{row} * d.shape.width + column, texel = d.texel(row, column), v = edge.vertex;
+        const size_t sample = d.sample(edge.tile, edge.start[0], edge.start[1]), v = edge.vertex;
+        const size_t texel = d.texel(edge.tile, edge.start[0], edge.start[1]);
         const float uv[2] = {static_cast<float>(texel % d.plane.width) / static_cast<float>(d.plane.width - 1),
                              static_cast<float>(texel / d.plane.width) / static_cast<float>(d.plane.height - 1)};
         std::copy_n(&d.positions[3 * v], 3, &out.grid[3 * sample]);

@@ -41,6 +41,20 @@ TEST(Scene, AGridHasItsInstancesAndTheCameraItsPath) {
     EXPECT_LT(scene.camera(1).eye[1], scene.camera(2).eye[1]);
 }
 
+// The place where the eye is in the space of the mesh is the one that the matrix takes to the eye.
+TEST(Scene, PlacementsGoBothWays) {
+    std::vector<SceneSurface> surfaces;
+    surfaces.push_back(std::move(SceneSurface::read(kMesh).value()));
+    for (const bool is_y_up : {false, true}) {
+        const Placement p = placement_of({0, {1, 2, 3}, 2, 30}, surfaces[0], is_y_up);
+        const std::array<double, 3> eye = {-4, 5, 0.5}, at = p.to_mesh(eye);
+        const std::array<float, 16> m = p.matrix();
+        for (size_t row = 0; row < 3; ++row)
+            EXPECT_NEAR(m[row] * at[0] + m[4 + row] * at[1] + m[8 + row] * at[2] + m[12 + row], eye[row], 1e-5);
+        EXPECT_EQ(m[is_y_up ? 6 : 10], static_cast<float>(p.scale));  // the axis that points up
+    }
+}
+
 TEST(Scene, WhatIsWrongIsNamed) {
     const auto message_of = [](const std::function<void(json&)>& change) {
         json text = scene_of(2, 2);
@@ -62,6 +76,10 @@ TEST(Scene, WhatIsWrongIsNamed) {
         {"frames", [](json& t) { t["frames"] = 0; }},
         {"width", [](json& t) { t["width"] = "wide"; }},
         {"pixel_error", [](json& t) { t["pixel_error"] = 0; }},
+        {"up",
+         [](json& t) {
+             t["meshes"] = {{{"file", kMesh}, {"up", "x"}}};
+         }},
         {"gpu_refines", [](json& t) { t["gpu_refines"] = 1; }},
         {"mesh",
          [](json& t) {

@@ -109,9 +109,12 @@ Result<Scene> read_scene(const std::string& text, const std::string& folder) {
     Scene scene;
     if (!root.contains("meshes") || !root["meshes"].is_array() || root["meshes"].empty())
         return wrong("meshes must be a list of .gim files");
-    for (const json& name : root["meshes"]) {
+    for (const json& mesh : root["meshes"]) {
+        const json& name = mesh.is_object() && mesh.contains("file") ? mesh["file"] : mesh;
         if (!name.is_string()) return wrong("meshes must be a list of .gim files");
-        scene.meshes.push_back((std::filesystem::path(folder) / name.get<std::string>()).string());
+        const std::string up = mesh.is_object() ? mesh.value("up", "z") : "z";
+        if (up != "y" && up != "z") fields.fail("up must be \"y\" or \"z\"");
+        scene.meshes.push_back({(std::filesystem::path(folder) / name.get<std::string>()).string(), up == "y"});
     }
     const auto meshes = static_cast<uint32_t>(scene.meshes.size());
     if (root.contains("instances") && root["instances"].is_array())

@@ -21,8 +21,13 @@ struct CameraKey {
     std::array<double, 3> eye = {}, target = {};
 };
 
+struct SceneMesh {
+    std::string path;
+    bool is_y_up = false;  // it is stood up: its y axis becomes the scene's z axis
+};
+
 struct Scene {
-    std::vector<std::string> meshes;  // paths
+    std::vector<SceneMesh> meshes;
     std::vector<SceneInstance> instances;
     std::vector<CameraKey> path;  // the camera goes from key to key in equal times; +z is up
     uint32_t frames = 60, width = 1280, height = 720;

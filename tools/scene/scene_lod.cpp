@@ -17,29 +17,34 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 }  // namespace
 
 std::array<double, 3> Placement::to_mesh(const std::array<double, 3>& point) const {
-    const double x = (point[0] - position[0]) / scale, y = (point[1] - position[1]) / scale,
-                 z = (point[2] - position[2]) / scale;
-    return {middle[0] + cosine * x + sine * y, middle[1] - sine * x + cosine * y, middle[2] + z};
+    const double a = (point[0] - position[0]) / scale, b = (point[1] - position[1]) / scale;
+    const double x = cosine * a + sine * b, y = -sine * a + cosine * b, z = (point[2] - position[2]) / scale;
+    if (is_y_up) return {middle[0] + x, middle[1] + z, middle[2] - y};
+    return {middle[0] + x, middle[1] + y, middle[2] + z};
 }
 
 std::array<float, 16> Placement::matrix() const {
     const double a = scale * cosine, b = scale * sine;
-    const double x = position[0] - a * middle[0] + b * middle[1], y = position[1] - b * middle[0] - a * middle[1];
-    const double z = position[2] - scale * middle[2];
+    // Where the axes of the mesh go, column after column.
+    const double standing[3][3] = {{a, b, 0}, {0, 0, scale}, {b, -a, 0}},
+                 lying[3][3] = {{a, b, 0}, {-b, a, 0}, {0, 0, scale}};
+    const auto& axes = is_y_up ? standing : lying;
     std::array<float, 16> m = {};
-    m[0] = m[5] = static_cast<float>(a);
-    m[1] = static_cast<float>(b);
-    m[4] = static_cast<float>(-b);
-    m[10] = static_cast<float>(scale);
-    m[12] = static_cast<float>(x);
-    m[13] = static_cast<float>(y);
-    m[14] = static_cast<float>(z);
+    for (size_t row = 0; row < 3; ++row) {
+        double origin = position[row];
+        for (size_t column = 0; column < 3; ++column) {
+            m[4 * column + row] = static_cast<float>(axes[column][row]);
+            origin -= axes[column][row] * middle[column];
+        }
+        m[12 + row] = static_cast<float>(origin);
+    }
     m[15] = 1;
     return m;
 }
 
-Placement placement_of(const SceneInstance& instance, const SceneSurface& surface) {
+Placement placement_of(const SceneInstance& instance, const SceneSurface& surface, bool is_y_up) {
     Placement p;
+    p.is_y_up = is_y_up;
     p.scale = instance.size / std::max(surface.longest_side(), 1e-300);
     p.cosine = std::cos(radians(instance.turn));
     p.sine = std::sin(radians(instance.turn));
@@ -54,7 +59,7 @@ SceneLod::SceneLod(const Scene& scene, const std::vector<SceneSurface>& surfaces
       pixels_per_unit_(scene.height / (2 * std::tan(radians(scene.field_of_view) / 2))),
       pixel_error_(scene.pixel_error * (scene.gpu_refines ? kLeftToGpu : 1)) {
     for (const SceneInstance& instance : scene.instances)
-        placements_.push_back(placement_of(instance, surfaces[instance.mesh]));
+        placements_.push_back(placement_of(instance, surfaces[instance.mesh], scene.meshes[instance.mesh].is_y_up));
 }
 
 Result<std::unique_ptr<SceneLod>> SceneLod::create(const Scene& scene, const std::vector<SceneSurface>& surfaces) {

@@ -10,15 +10,16 @@
 
 namespace gim {
 
-// From the space of a mesh to that of the scene: turned about z, scaled, moved.
+// From the space of a mesh to that of the scene: stood up, turned about z, scaled, moved.
 struct Placement {
     double scale = 1, cosine = 1, sine = 0;
+    bool is_y_up = false;
     std::array<double, 3> middle = {}, position = {};
 
     std::array<double, 3> to_mesh(const std::array<double, 3>& point) const;
     std::array<float, 16> matrix() const;  // column after column
 };
-Placement placement_of(const SceneInstance& instance, const SceneSurface& surface);
+Placement placement_of(const SceneInstance& instance, const SceneSurface& surface, bool is_y_up);
 
 // The patches of all instances, one after the other.
 struct FramePatches {

@@ -60,9 +60,9 @@ struct Runner {
 Result<SceneFigures> run_scene(const Scene& scene, const SceneRun& run) {
     std::vector<SceneSurface> surfaces;
     SceneFigures figures;
-    for (const std::string& path : scene.meshes) {
-        Result<SceneSurface> surface = SceneSurface::read(path);
-        if (!surface.ok()) return Error{surface.error().stage, path + ": " + surface.error().message};
+    for (const SceneMesh& mesh : scene.meshes) {
+        Result<SceneSurface> surface = SceneSurface::read(mesh.path);
+        if (!surface.ok()) return Error{surface.error().stage, mesh.path + ": " + surface.error().message};
         figures.bytes_of_files += surface.value().file().size();
         surfaces.push_back(std::move(surface.value()));
     }
