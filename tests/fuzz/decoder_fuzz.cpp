@@ -1,4 +1,5 @@
 // libFuzzer: the whole C interface. Corrects checksums first, so that the fuzzer gets to the streams.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -7,7 +8,9 @@
 #include "format/bytes.h"
 #include "format/checksum.h"
 #include "format/container.h"
+#include "gim/clusters.h"
 #include "gim/decoder.hpp"
+#include "gim/refine.h"
 
 namespace {
 
@@ -105,8 +108,73 @@ void decode_plane(const gim_info& info, const std::vector<uint8_t>& bytes, uint3
                              p.scratch_size) != GIM_OK)
             return;
         for (const float v : values)
-            if (!(v >= -1.000001f && v <= 1.000001f)) __builtin_trap();
+            if (kind == GIM_PLANE_DISPLACEMENTS ? !std::isfinite(v) : !(v >= -1.000001f && v <= 1.000001f))
+                __builtin_trap();
     }
+}
+
+// Refines over a domain, goes back to the base, and makes clusters.
+void use_domain(const gim_domain* domain, const gim_domain_info& shape) {
+    const auto most = static_cast<uint32_t>(std::min<uint64_t>(shape.most_triangles, 2 * shape.tile_count + 500));
+    gim::Scratch memory(gim_refined_size(domain, most));
+    gim_refined* mesh = nullptr;
+    if (gim_begin_refined(domain, most, memory.data(), memory.size(), &mesh) != GIM_OK) __builtin_trap();
+    gim_rule rule{};
+    for (const float error : {1e-30f, 1e30f}) {
+        rule.object_error = error;
+        if (gim_refine(mesh, &rule, 2000, nullptr) != GIM_OK) __builtin_trap();
+        uint32_t count = 0, patches = 0;
+        const uint32_t* triangles = gim_refined_triangles(mesh, &count);
+        if (count > most) __builtin_trap();
+        for (size_t i = 0; i < 3 * size_t{count}; ++i)
+            if (triangles[i] >= shape.vertex_count) __builtin_trap();
+        std::vector<gim_patch> list(2 * size_t{count});
+        if (gim_read_patches(mesh, list.data(), 2 * count, &patches) != GIM_OK) __builtin_trap();
+    }
+    gim_cluster_sizes sizes;
+    if (gim_read_cluster_sizes(domain, 4, &sizes) != GIM_OK) return;
+    std::vector<gim_cluster> clusters(sizes.cluster_count);
+    std::vector<uint32_t> vertices(sizes.vertex_count);
+    std::vector<uint8_t> triangles(3 * size_t{sizes.triangle_count});
+    gim::Scratch scratch(sizes.scratch_size);
+    gim_cluster_tree tree;
+    if (gim_decode_clusters(domain, 4, clusters.data(), vertices.data(), triangles.data(), scratch.data(),
+                            scratch.size(), &tree) != GIM_OK)
+        __builtin_trap();
+    if (tree.cluster_count > sizes.cluster_count || tree.vertex_count > sizes.vertex_count) __builtin_trap();
+}
+
+// Opens the domain of level 0, and that of its displacements.
+void refine(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t image) {
+    gim_level_info l;
+    if (gim_read_level_info(&info, bytes.data(), bytes.size(), image, 0, &l) != GIM_OK) return;
+    std::vector<float> x(size_t{l.vertex_count} * 3);
+    gim::Scratch of_level(l.scratch_size);
+    if (gim_decode_mesh(&info, bytes.data(), bytes.size(), image, 0, x.data(), nullptr, nullptr, nullptr,
+                        of_level.data(), of_level.size()) != GIM_OK)
+        return;
+    gim_domain_info shape;
+    if (gim_read_domain_info(&info, bytes.data(), bytes.size(), image, 0, &shape) != GIM_OK) return;
+    gim::Scratch memory(shape.domain_size), scratch(shape.scratch_size);
+    const gim_domain* domain = nullptr;
+    if (gim_open_domain(&info, bytes.data(), bytes.size(), image, 0, x.data(), memory.data(), memory.size(),
+                        scratch.data(), scratch.size(), &domain) != GIM_OK)
+        return;
+    use_domain(domain, shape);
+    gim_plane_info p;
+    if (gim_read_detailed_domain_info(&info, bytes.data(), bytes.size(), image, 0, &shape) != GIM_OK ||
+        gim_read_plane_info(&info, bytes.data(), bytes.size(), image, GIM_PLANE_DISPLACEMENTS, 0, &p) != GIM_OK)
+        return;
+    std::vector<float> values(size_t{p.width} * p.height * 3), detailed(size_t{shape.vertex_count} * 3);
+    gim::Scratch of_plane(p.scratch_size), fine_memory(shape.domain_size), fine_scratch(shape.scratch_size);
+    if (gim_decode_plane(&info, bytes.data(), bytes.size(), image, GIM_PLANE_DISPLACEMENTS, 0, values.data(),
+                         of_plane.data(), of_plane.size()) != GIM_OK)
+        return;
+    if (gim_open_detailed_domain(&info, bytes.data(), bytes.size(), image, 0, x.data(), values.data(), detailed.data(),
+                                 fine_memory.data(), fine_memory.size(), fine_scratch.data(), fine_scratch.size(),
+                                 &domain) != GIM_OK)
+        __builtin_trap();
+    use_domain(domain, shape);
 }
 
 }  // namespace
@@ -119,7 +187,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (uint32_t image = 0; image < info.image_count; ++image)
         for (uint32_t level = 0; level < info.level_count; ++level) decode(info, bytes, image, level);
     for (uint32_t image = 0; image < info.image_count; ++image)
-        for (uint32_t kind = 0; kind < 2; ++kind) decode_plane(info, bytes, image, kind);
+        for (uint32_t kind = 0; kind < 3; ++kind) decode_plane(info, bytes, image, kind);
+    for (uint32_t image = 0; image < info.image_count; ++image) refine(info, bytes, image);
     uint32_t paths = 0;
     for (uint32_t level = 0; level < info.level_count; ++level)
         (void)gim_read_seams(&info, bytes.data(), bytes.size(), 0, level, nullptr, &paths);
