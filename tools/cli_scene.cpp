@@ -24,7 +24,9 @@ Subcommand add_bench_scene(CLI::App& app) {
         "A mesh whose y axis points up: {\"file\": \"bunny.gim\", \"up\": \"y\"}.\n"
         "In place of a grid: \"instances\": [{\"mesh\": 0, \"position\": [0, 0, 0], \"size\": 1, \"turn\": 90}, ...].\n"
         "Paths are relative to SCENE, +z is up, sizes are those of the longest side. With gpu_refines the CPU leaves\n"
-        "four times the error, and the GPU halves the cells of instances where it would show.");
+        "four times the error, and the GPU halves the cells of instances where it would show. With \"tessellates\": "
+        "true\n"
+        "tessellation shaders draw the patches, else a compute shader. Displacements of gim emboss are drawn too.");
     sub->add_option("SCENE", c.scene, "Scene to draw (-: standard input)")->required();
     sub->add_option("--frames", c.frames, "Folder for pictures of the frames: frame-00000.png, ...");
     sub->add_option("--json", c.json, "Write the figures here (-: standard output)");

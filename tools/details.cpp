@@ -157,28 +157,11 @@ void add_normal(const float* a, const float* b, const float* c, float* const (&s
         for (size_t k = 0; k < 3; ++k) sum[k] += n[k];
 }
 
-// The area-weighted normal of each vertex, unit length.
-std::vector<float> normals_of(const std::vector<float>& positions, std::span<const uint32_t> triangles) {
-    std::vector<float> normals(positions.size(), 0.0f);
-    const auto at = [](auto& of, uint32_t v) { return &of[3 * size_t{v}]; };
-    for (size_t i = 0; i < triangles.size(); i += 3) {
-        const uint32_t* t = &triangles[i];
-        add_normal(at(positions, t[0]), at(positions, t[1]), at(positions, t[2]),
-                   {at(normals, t[0]), at(normals, t[1]), at(normals, t[2])});
-    }
-    for (size_t i = 0; i < normals.size(); i += 3) {
-        const float length =
-            std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
-        for (size_t k = 0; k < 3; ++k) normals[i + k] = length > 0 ? normals[i + k] / length : 0;
-    }
-    return normals;
-}
-
 // Turns the refined mesh into the surface of the image.
 void take_surface(const DetailedSurface& d, DecodedImage* image) {
     uint32_t count = 0;
     const uint32_t* triangles = gim_refined_triangles(d.mesh, &count);
-    const std::vector<float> normals = normals_of(d.positions, {triangles, 3 * size_t{count}});
+    const std::vector<float> normals = vertex_normals(d.positions, {triangles, 3 * size_t{count}});
     const size_t samples = size_t{d.shape.width} * d.shape.height;
     DecodedImage out;
     out.origin = image->origin;
@@ -213,6 +196,22 @@ void take_surface(const DetailedSurface& d, DecodedImage* image) {
 }
 
 }  // namespace
+
+std::vector<float> vertex_normals(std::span<const float> positions, std::span<const uint32_t> triangles) {
+    std::vector<float> normals(positions.size(), 0.0f);
+    const auto at = [](auto& of, uint32_t v) { return &of[3 * size_t{v}]; };
+    for (size_t i = 0; i < triangles.size(); i += 3) {
+        const uint32_t* t = &triangles[i];
+        add_normal(at(positions, t[0]), at(positions, t[1]), at(positions, t[2]),
+                   {at(normals, t[0]), at(normals, t[1]), at(normals, t[2])});
+    }
+    for (size_t i = 0; i < normals.size(); i += 3) {
+        const float length =
+            std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
+        for (size_t k = 0; k < 3; ++k) normals[i + k] = length > 0 ? normals[i + k] / length : 0;
+    }
+    return normals;
+}
 
 gim_status add_details(Decoder& decoder, const Bytes& file, uint32_t index, DecodedImage* image) {
     DetailedSurface d;

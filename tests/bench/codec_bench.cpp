@@ -1,7 +1,8 @@
-// Google Benchmark: inverse wavelet, entropy decoding, whole decode of a 257 x 257 image, one thread.
+// Google Benchmark: inverse wavelet, entropy decoding, whole decode and refinement of a 257 x 257 image, one thread.
 // Run codec_bench. GIM_BENCH_IMAGE=file replaces the built-in image: 257 x 257 headerless floats.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "encoder/squares/import_image.h"
 #include "encoder/squares/write_squares.h"
 #include "gim/decoder.hpp"
+#include "gim/refine.h"
 
 namespace gim {
 namespace {
@@ -111,6 +113,97 @@ void entropy_decoding(benchmark::State& state) {
     state.SetBytesProcessed(static_cast<int64_t>(state.iterations()) * static_cast<int64_t>(streams[0].size()));
 }
 
+// A domain over the image, with a mesh.
+struct Refined {
+    std::vector<uint8_t> bytes = coded(false, 2);
+    gim_info info{};
+    gim_domain_info shape{};
+    std::vector<float> positions;
+    Scratch memory, of_mesh;
+    const gim_domain* domain = nullptr;
+    gim_refined* mesh = nullptr;
+
+    Refined() {
+        gim_level_info level;
+        bool ok = gim_read_info(bytes.data(), bytes.size(), nullptr, &info) == GIM_OK &&
+                  gim_read_level_info(&info, bytes.data(), bytes.size(), 0, 0, &level) == GIM_OK &&
+                  gim_read_domain_info(&info, bytes.data(), bytes.size(), 0, 0, &shape) == GIM_OK;
+        if (!ok) return;
+        positions.resize(3 * size_t{level.vertex_count});
+        Scratch scratch(std::max(level.scratch_size, shape.scratch_size));
+        memory = Scratch(shape.domain_size);
+        ok = gim_decode_mesh(&info, bytes.data(), bytes.size(), 0, 0, positions.data(), nullptr, nullptr, nullptr,
+                             scratch.data(), scratch.size()) == GIM_OK &&
+             gim_open_domain(&info, bytes.data(), bytes.size(), 0, 0, positions.data(), memory.data(), memory.size(),
+                             scratch.data(), scratch.size(), &domain) == GIM_OK;
+        if (!ok) return;
+        const auto most = static_cast<uint32_t>(shape.most_triangles);
+        of_mesh = Scratch(gim_refined_size(domain, most));
+        (void)gim_begin_refined(domain, most, of_mesh.data(), of_mesh.size(), &mesh);
+    }
+    uint32_t triangles() const {
+        uint32_t count = 0;
+        (void)gim_refined_triangles(mesh, &count);
+        return count;
+    }
+};
+
+// Splits until all samples with this error are there, and welds them again.
+void split_and_weld(benchmark::State& state) {
+    Refined r;
+    if (!r.mesh) return state.SkipWithError("cannot be refined");
+    gim_rule fine{}, coarse{};
+    fine.object_error = 1.0f / static_cast<float>(state.range(0));
+    coarse.object_error = 1e6f;
+    const uint32_t base = r.triangles();
+    uint64_t operations = 0;
+    for (auto _ : state) {
+        (void)gim_refine(r.mesh, &fine, 0, nullptr);
+        operations += r.triangles() - base;  // each split adds two triangles, and is undone
+        (void)gim_refine(r.mesh, &coarse, 0, nullptr);
+    }
+    state.counters["operations/s"] = benchmark::Counter(static_cast<double>(operations), benchmark::Counter::kIsRate);
+    state.counters["triangles"] = static_cast<double>(operations) / static_cast<double>(state.iterations());
+}
+
+// 400 meshes of one image around an eye that moves by a hundredth of their distance in each frame.
+void moving_eye(benchmark::State& state) {
+    Refined r;
+    if (!r.mesh) return state.SkipWithError("cannot be refined");
+    constexpr uint32_t kMeshes = 400, kMost = 4000;
+    const uint64_t size = gim_refined_size(r.domain, kMost);
+    std::vector<Scratch> memory(kMeshes);
+    std::vector<gim_refined*> meshes(kMeshes);
+    for (uint32_t i = 0; i < kMeshes; ++i) {
+        memory[i] = Scratch(size);
+        (void)gim_begin_refined(r.domain, kMost, memory[i].data(), memory[i].size(), &meshes[i]);
+    }
+    gim_rule rule{};
+    rule.pixel_error = 1;
+    rule.pixels_per_unit = static_cast<float>(state.range(0));
+    const auto frame = [&](int number) {
+        for (uint32_t i = 0; i < kMeshes; ++i) {
+            const float distance = 8 + 0.1f * static_cast<float>(i);
+            const float angle = 0.01f * static_cast<float>(number) + static_cast<float>(i);
+            rule.eye[0] = distance * std::cos(angle);
+            rule.eye[1] = distance * std::sin(angle);
+            (void)gim_refine(meshes[i], &rule, 0, nullptr);
+        }
+    };
+    int number = 0;
+    frame(number);
+    for (auto _ : state) frame(++number);
+    uint64_t triangles = 0;
+    for (const gim_refined* mesh : meshes) {
+        uint32_t count = 0;
+        (void)gim_refined_triangles(mesh, &count);
+        triangles += count;
+    }
+    state.counters["triangles/mesh"] = static_cast<double>(triangles) / kMeshes;
+}
+
+BENCHMARK(split_and_weld)->Arg(1000)->Arg(4000)->Unit(benchmark::kMillisecond);
+BENCHMARK(moving_eye)->Arg(1000)->Arg(4000)->Unit(benchmark::kMillisecond);
 BENCHMARK(inverse_wavelet<Reversible53>)->Unit(benchmark::kMicrosecond);
 BENCHMARK(inverse_wavelet<Irreversible97>)->Unit(benchmark::kMicrosecond);
 BENCHMARK(entropy_decoding)->Unit(benchmark::kMillisecond);

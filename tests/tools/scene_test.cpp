@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gim/emboss.h"
 #include "tests/tools/program.h"
+#include "tools/file.h"
 #include "tools/scene/scene_painter.h"
 #include "tools/scene/scene_run.h"
 
@@ -119,6 +121,47 @@ TEST(Scene, LevelsFollowTheDistanceAndTheBudget) {
     EXPECT_LE(near.triangles, scene.most_triangles);
     EXPECT_GT(near.triangles, far.triangles);
     EXPECT_GT(near.largest_error, scene.pixel_error);
+}
+
+// Embossed files are drawn with their details, by both ways of drawing.
+TEST(Scene, DetailsAreDrawn) {
+    const test::TemporaryFolder folder;
+    const Result<Bytes> file = read_file(kMesh);
+    ASSERT_TRUE(file.ok());
+    const SceneSurface plain = std::move(SceneSurface::read(kMesh).value());
+    EmbossOptions options;
+    options.at = plain.middle();
+    options.size = 0.3 * plain.longest_side();
+    options.depth = 0.1 * plain.longest_side();
+    const Result<Embossed> embossed = emboss(file.value(), {32, 32, std::vector<float>(1024, 1.0f)}, options);
+    ASSERT_TRUE(embossed.ok()) << embossed.error().message;
+    const Bytes& bytes = embossed.value().bytes;
+    test::save(folder.file("embossed.gim"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    std::vector<SceneSurface> surfaces;
+    surfaces.push_back(std::move(SceneSurface::read(folder.file("embossed.gim")).value()));
+    EXPECT_TRUE(surfaces[0].has_details());
+    EXPECT_GT(surfaces[0].shape().vertex_count, 2 * plain.shape().vertex_count);
+
+    std::vector<size_t> covered;
+    for (const bool tessellates : {false, true}) {
+        Scene scene = read(scene_of(1, 1));
+        scene.tessellates = tessellates;
+        scene.instance_triangles = 200000;
+        scene.pixel_error = 1;
+        const auto painter = make_painter(scene, surfaces);
+        if (!painter.ok()) GTEST_SKIP() << painter.error().message;
+        const auto lod = SceneLod::create(scene, surfaces);
+        ASSERT_TRUE(lod.ok()) << lod.error().message;
+        FramePatches patches;
+        lod.value()->choose(LodWay::kAdaptive, scene.camera(3), &patches);
+        painter.value()->upload(*lod.value(), LodWay::kAdaptive, scene.camera(3), patches);
+        ASSERT_TRUE(painter.value()->draw().ok());
+        const std::vector<uint8_t> picture = painter.value()->picture();
+        covered.push_back(0);
+        for (size_t p = 0; p < picture.size(); p += 3) covered.back() += picture[p] != picture[0];
+    }
+    EXPECT_GT(covered[0], 500u);
+    EXPECT_NEAR(double(covered[0]), double(covered[1]), 0.02 * double(covered[0]));
 }
 
 TEST(Scene, AnInstanceWithoutRoomIsNamed) {

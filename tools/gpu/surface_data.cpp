@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "gim/decoder.hpp"
 #include "gim/refine.h"
@@ -54,6 +55,16 @@ gim_status read_normals(const Source& source, const gim_level_info& finest, Norm
                            map->normals.data(), nullptr, nullptr, scratch.data(), scratch.size());
 }
 
+// Triples as 8 bits each, with a fourth. Undefined ones are 0.
+std::vector<int8_t> coarse_normals(std::span<const float> normals) {
+    std::vector<int8_t> coarse(normals.size() / 3 * 4, 0);
+    for (size_t i = 0; i < normals.size(); ++i) {
+        if (std::isfinite(normals[i]))
+            coarse[i / 3 * 4 + i % 3] = static_cast<int8_t>(std::lround(127 * std::clamp(normals[i], -1.0f, 1.0f)));
+    }
+    return coarse;
+}
+
 void place_in_map(const Source& source, const gim_level_info& finest, const gim_level_info& shape, uint32_t intervals,
                   uint32_t level, SurfaceData* out) {
     const bool has_slots = source.info.layout == GIM_LAYOUT_TILES;
@@ -91,11 +102,24 @@ Result<SurfaceData> read_surface_data(const gim_info& info, std::span<const uint
     if (s != GIM_OK) return error_of(s);
     out.map_width = map.width;
     out.map_height = map.height;
-    out.normals.resize(size_t{4} * map.width * map.height);
-    for (size_t i = 0; i < map.normals.size(); ++i)
-        out.normals[i / 3 * 4 + i % 3] =
-            static_cast<int8_t>(std::lround(127 * std::clamp(map.normals[i], -1.0f, 1.0f)));
+    out.normals = coarse_normals(map.normals);
     place_in_map(source, finest, shape, domain.intervals, level, &out);
+    return out;
+}
+
+SurfaceData surface_data_of(const gim_domain* domain, const gim_domain_info& shape, bool is_tiles,
+                            std::span<const float> positions, std::span<const float> normals) {
+    SurfaceData out;
+    out.width = out.map_width = shape.width;
+    out.height = out.map_height = shape.height;
+    std::vector<float> laid(size_t{3} * shape.width * shape.height);
+    gim_lay_out_samples(domain, normals.data(), 3, laid.data());
+    out.normals = coarse_normals(laid);
+    gim_lay_out_samples(domain, positions.data(), 3, laid.data());
+    out.positions = std::move(laid);
+    out.slot = is_tiles ? shape.intervals + 1 : std::max(shape.width, shape.height);
+    out.slot_texels.fill(is_tiles ? out.slot : 0);
+    out.interval_texels.fill(1);
     return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "gim/decoder.h"
 #include "gim/encoder.h"
+#include "gim/refine.h"
 #include "tools/gpu/shader_types.h"
 
 namespace gim {
@@ -27,6 +28,11 @@ struct SurfaceData {
 // normals of level 0. Images of GIM_LAYOUT_MCGIM have no domain.
 Result<SurfaceData> read_surface_data(const gim_info& info, std::span<const uint8_t> bytes, uint32_t image,
                                       uint32_t level);
+
+// The same for a domain whose vertices the caller has, as one with details. positions, normals: three floats a vertex. The
+// normal map is as fine as the samples. is_tiles: whether the layout is GIM_LAYOUT_TILES.
+SurfaceData surface_data_of(const gim_domain* domain, const gim_domain_info& shape, bool is_tiles,
+                            std::span<const float> positions, std::span<const float> normals);
 
 // Several images in shared buffers: positions one after the other, normal maps below each other in one texture.
 struct SurfaceStore {

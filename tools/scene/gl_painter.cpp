@@ -1,9 +1,10 @@
-// Draws scenes by the compute shader and one indirect draw.
+// Draws scenes by the compute shader and one indirect draw, or by the tessellator.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "tools/details.h"
 #include "tools/gpu/camera.h"
 #include "tools/gpu/egl_context.h"
 #include "tools/gpu/gl_expand.h"
@@ -28,17 +29,25 @@ class GlPainter final : public ScenePainter {
         if (!context.ok()) return context.error();
         std::vector<SurfaceData> data;
         for (const SceneSurface& surface : surfaces) {
+            if (surface.has_details()) {
+                data.push_back(surface_data_of(surface.domain(), surface.shape(),
+                                               surface.info().layout == GIM_LAYOUT_TILES, surface.positions(),
+                                               vertex_normals(surface.positions(), surface.finest_indices())));
+                continue;
+            }
             Result<SurfaceData> read = read_surface_data(surface.info(), surface.file(), 0, 0);
             if (!read.ok()) return read.error();
             data.push_back(std::move(read.value()));
         }
         Result<GlExpand> expand = GlExpand::create(kFirstCapacity);
         if (!expand.ok()) return expand.error();
+        Result<GlTessellate> tessellate = GlTessellate::create();
+        if (!tessellate.ok()) return tessellate.error();
         Result<GlFrame> frame = GlFrame::create(scene.width, scene.height);
         if (!frame.ok()) return frame.error();
         return std::unique_ptr<ScenePainter>(new GlPainter(scene, std::move(context.value()), join_surfaces(data),
-                                                           std::move(expand.value()), std::move(frame.value()),
-                                                           surfaces));
+                                                           std::move(expand.value()), std::move(tessellate.value()),
+                                                           std::move(frame.value()), surfaces));
     }
 
     std::string renderer() const override { return context_.renderer(); }
@@ -61,6 +70,14 @@ class GlPainter final : public ScenePainter {
     }
 
     Result<uint64_t> draw() override {
+        if (is_expanded_ && scene_.tessellates) {
+            frame_.begin(kSky);
+            tessellate_.draw(surface_);
+            glFinish();
+            const Result<void> checked = check_gl("drawing a frame");
+            if (!checked.ok()) return checked.error();
+            return uint64_t{0};
+        }
         if (is_expanded_) expand_.expand(surface_);
         if (const uint32_t needed = expand_.needed(); needed > expand_.capacity()) {
             expand_.set_capacity(needed + needed / 4);
@@ -85,13 +102,14 @@ class GlPainter final : public ScenePainter {
     }
 
   private:
-    GlPainter(const Scene& scene, EglContext context, const SurfaceStore& store, GlExpand expand, GlFrame frame,
-              const std::vector<SceneSurface>& surfaces)
+    GlPainter(const Scene& scene, EglContext context, const SurfaceStore& store, GlExpand expand,
+              GlTessellate tessellate, GlFrame frame, const std::vector<SceneSurface>& surfaces)
         : scene_(scene),
           surfaces_(surfaces),
           context_(std::move(context)),
           surface_(store),
           expand_(std::move(expand)),
+          tessellate_(std::move(tessellate)),
           frame_(std::move(frame)) {}
 
     // Puts the triangles of the chosen levels where expanded ones would be.
@@ -148,6 +166,7 @@ class GlPainter final : public ScenePainter {
     EglContext context_;  // goes last
     GlSurface surface_;
     GlExpand expand_;
+    GlTessellate tessellate_;
     GlFrame frame_;
     bool is_expanded_ = true;  // patches; else triangles as they are
 };

@@ -29,6 +29,11 @@ class Fields {
     uint32_t count(const json& of, const char* name, uint32_t otherwise, uint32_t low, uint32_t high) {
         return static_cast<uint32_t>(number(of, name, otherwise, low, high));
     }
+    bool flag(const json& of, const char* name) {
+        if (!of.contains(name)) return false;
+        if (!of[name].is_boolean()) fail(std::string(name) + " must be true or false");
+        return of[name].is_boolean() && of[name].get<bool>();
+    }
     std::array<double, 3> point(const json& of, const char* name) {
         std::array<double, 3> p = {};
         if (!of.contains(name) || !of[name].is_array() || of[name].size() != 3 ||
@@ -134,12 +139,8 @@ Result<Scene> read_scene(const std::string& text, const std::string& folder) {
     scene.pixel_error = fields.number(root, "pixel_error", scene.pixel_error, 0.01, 1000);
     scene.most_triangles = fields.count(root, "most_triangles", scene.most_triangles, 1, 1u << 30);
     scene.instance_triangles = fields.count(root, "instance_triangles", scene.instance_triangles, 2, 1u << 28);
-    if (root.contains("gpu_refines")) {
-        if (!root["gpu_refines"].is_boolean())
-            fields.fail("gpu_refines must be true or false");
-        else
-            scene.gpu_refines = root["gpu_refines"].get<bool>();
-    }
+    scene.gpu_refines = fields.flag(root, "gpu_refines");
+    scene.tessellates = fields.flag(root, "tessellates");
     if (scene.instances.empty()) fields.fail("there are no instances");
     if (!fault.empty()) return wrong(fault);
     return scene;

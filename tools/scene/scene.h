@@ -35,6 +35,7 @@ struct Scene {
     double pixel_error = 1;
     uint32_t most_triangles = 1000000;    // of all instances together, in a frame
     uint32_t instance_triangles = 20000;  // room for each instance
+    bool tessellates = false;             // patches are drawn by tessellation shaders, not by a compute shader
     bool gpu_refines = false;  // the CPU leaves four times the error, and the GPU halves cells where a screen shows it
 
     // The camera in a frame, 0 .. frames - 1.

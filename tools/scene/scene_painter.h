@@ -17,7 +17,7 @@ class ScenePainter {
     virtual std::string renderer() const = 0;
     // Sends what the frame needs to the GPU, and waits for it.
     virtual void upload(const SceneLod& lod, LodWay way, const CameraKey& camera, const FramePatches& patches) = 0;
-    // Draws what was sent, and waits for it. Returns the number of triangles.
+    // Draws what was sent, and waits for it. Returns the number of triangles; 0 where the tessellator makes them.
     virtual Result<uint64_t> draw() = 0;
     // The rgb of the last frame, top row first.
     virtual std::vector<uint8_t> picture() const = 0;

@@ -32,13 +32,16 @@ class AlignedMemory {
 
 class SceneSurface {
   public:
-    // Reads the first image of a file, at level 0.
+    // Reads the first image of a file, at level 0, with its displacements if it has some.
     static Result<SceneSurface> read(const std::string& path);
 
     const gim_domain* domain() const { return domain_; }
     const gim_domain_info& shape() const { return shape_; }
     const gim_info& info() const { return info_; }
     const Bytes& file() const { return file_; }
+    bool has_details() const { return has_details_; }
+    const std::vector<float>& positions() const { return positions_; }        // three floats a vertex
+    const std::vector<uint32_t>& finest_indices() const { return indices_; }  // of the mesh of all samples
     const std::array<double, 3>& middle() const { return middle_; }
     double longest_side() const { return longest_side_; }
     double radius() const { return radius_; }  // of a ball around the middle
@@ -58,6 +61,7 @@ class SceneSurface {
   private:
     SceneSurface() = default;
     gim_status open();
+    gim_status open_details(const gim_plane_info& plane);
     gim_status refine_all();
     Result<void> simplify();
 
@@ -68,10 +72,11 @@ class SceneSurface {
     AlignedMemory memory_;
     const gim_domain* domain_ = nullptr;
     std::array<double, 3> middle_ = {};
+    bool has_details_ = false;
     double longest_side_ = 0, radius_ = 0;
     std::vector<gim_patch> finest_patches_;
     uint32_t finest_triangles_ = 0;
-    std::vector<uint32_t> indices_;    // of the mesh of all samples
+    std::vector<uint32_t> indices_;
     std::vector<uint32_t> sample_of_;  // per vertex, one of its samples
     std::vector<DiscreteLevel> levels_;
 };
