@@ -67,7 +67,7 @@ test::Decoded decode_all(Decoder& decoder, const Bytes& file) {
     out.status = decoder.open(file);
     for (uint32_t i = 0; out.status == GIM_OK && i < decoder.info().image_count; ++i)
         out.status = decode_levels(decoder, i, &out);
-    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS}) {
+    for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS, GIM_PLANE_DISPLACEMENTS}) {
         for (uint32_t i = 0; out.status == GIM_OK && i < decoder.info().image_count; ++i)
             out.status = decode_planes(decoder, i, kind, &out);
     }

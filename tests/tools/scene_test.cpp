@@ -133,6 +133,7 @@ TEST(Scene, DetailsAreDrawn) {
     options.at = plain.middle();
     options.size = 0.3 * plain.longest_side();
     options.depth = 0.1 * plain.longest_side();
+    options.texel_exponent = 1;
     const Result<Embossed> embossed = emboss(file.value(), {32, 32, std::vector<float>(1024, 1.0f)}, options);
     ASSERT_TRUE(embossed.ok()) << embossed.error().message;
     const Bytes& bytes = embossed.value().bytes;
@@ -140,7 +141,7 @@ TEST(Scene, DetailsAreDrawn) {
     std::vector<SceneSurface> surfaces;
     surfaces.push_back(std::move(SceneSurface::read(folder.file("embossed.gim")).value()));
     EXPECT_TRUE(surfaces[0].has_details());
-    EXPECT_GT(surfaces[0].shape().vertex_count, 2 * plain.shape().vertex_count);
+    EXPECT_GT(surfaces[0].shape().vertex_count, 3 * plain.shape().vertex_count);
 
     std::vector<size_t> covered;
     for (const bool tessellates : {false, true}) {
