@@ -170,7 +170,7 @@ void split_and_weld(benchmark::State& state) {
 void moving_eye(benchmark::State& state) {
     Refined r;
     if (!r.mesh) return state.SkipWithError("cannot be refined");
-    constexpr uint32_t kMeshes = 400, kMost = 4000;
+    constexpr uint32_t kMeshes = 400, kMost = 20000;
     const uint64_t size = gim_refined_size(r.domain, kMost);
     std::vector<Scratch> memory(kMeshes);
     std::vector<gim_refined*> meshes(kMeshes);

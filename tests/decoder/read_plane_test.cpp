@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <functional>
+#include <limits>
 #include <map>
 
 #include "format/checksum.h"
