@@ -102,6 +102,19 @@ Status read_detailed(const LevelReader& reader, const LevelRequest& request, uin
     return Status::kOk;
 }
 
+// Calls f(sample, vertex) for the samples of all tiles, as their place in the image, row by row.
+template <class F>
+void for_each_sample(const QuadDomain& domain, const F& f) {
+    const DomainShape& shape = domain.shape();
+    for (uint32_t t = 0; t < shape.tiles; ++t) {
+        for (uint32_t row = 0; row <= shape.intervals; ++row) {
+            const size_t first = size_t{shape.row_of(t) + row} * shape.width() + shape.column_of(t);
+            for (uint32_t column = 0; column <= shape.intervals; ++column)
+                f(first + column, domain.vertex_at(t, row, column));
+        }
+    }
+}
+
 constexpr uintptr_t kAlignment = 16;
 bool is_aligned(const void* memory) { return memory && reinterpret_cast<uintptr_t>(memory) % kAlignment == 0; }
 
@@ -179,18 +192,18 @@ gim_status gim_open_detailed_domain(const gim_info* info, const void* bytes, siz
     });
 }
 
+void gim_read_sample_vertices(const gim_domain* domain, uint32_t* vertices) {
+    const DomainShape& shape = domain->domain.shape();
+    std::fill_n(vertices, size_t{shape.width()} * shape.height(), GIM_NOTHING);
+    for_each_sample(domain->domain, [&](size_t sample, uint32_t vertex) { vertices[sample] = vertex; });
+}
+
 void gim_lay_out_samples(const gim_domain* domain, const float* of_vertices, uint32_t components, float* samples) {
     const DomainShape& shape = domain->domain.shape();
-    const size_t width = shape.width();
-    std::fill_n(samples, width * shape.height() * components, std::numeric_limits<float>::quiet_NaN());
-    for (uint32_t t = 0; t < shape.tiles; ++t) {
-        for (uint32_t row = 0; row <= shape.intervals; ++row) {
-            float* to = samples + ((shape.row_of(t) + row) * width + shape.column_of(t)) * components;
-            for (uint32_t column = 0; column <= shape.intervals; ++column, to += components)
-                std::copy_n(of_vertices + size_t{domain->domain.vertex_at(t, row, column)} * components, components,
-                            to);
-        }
-    }
+    std::fill_n(samples, size_t{shape.width()} * shape.height() * components, std::numeric_limits<float>::quiet_NaN());
+    for_each_sample(domain->domain, [&](size_t sample, uint32_t vertex) {
+        std::copy_n(of_vertices + size_t{vertex} * components, components, samples + sample * components);
+    });
 }
 
 void gim_vertex_worth(const gim_domain* domain, uint32_t vertex, float* error, float* radius) {

@@ -15,19 +15,6 @@ namespace {
 constexpr uint32_t kMostTriangles = 1u << 24;
 constexpr float kErrorOfDepth = 0.01f;  // what is left out, as a share of the largest displacement
 
-class AlignedBytes {
-  public:
-    explicit AlignedBytes(uint64_t size) : blocks_(size / sizeof(Block) + 1) {}
-    void* get() { return blocks_.data(); }
-    size_t size() const { return blocks_.size() * sizeof(Block); }
-
-  private:
-    struct alignas(16) Block {
-        std::byte bytes[16];
-    };
-    std::vector<Block> blocks_;
-};
-
 // An open domain with details, and what it stands on.
 struct DetailedSurface {
     gim_domain_info shape{};
@@ -35,7 +22,7 @@ struct DetailedSurface {
     uint32_t parts = 1;                  // texels for each step between samples of level 0
     uint32_t slot = 0, coarse_slot = 0;  // samples from one tile to the next, here and at level 0
     std::vector<float> displacements, positions;
-    AlignedBytes memory{0}, of_mesh{0};
+    Scratch memory, of_mesh;
     const gim_domain* domain = nullptr;
     gim_refined* mesh = nullptr;
 
@@ -69,15 +56,15 @@ gim_status open(Decoder& decoder, const Bytes& file, const DecodedImage& image, 
     d->slot = d->shape.intervals + apart;
     d->coarse_slot = d->shape.intervals / d->parts + apart;
     d->positions.resize(3 * size_t{d->shape.vertex_count});
-    d->memory = AlignedBytes(d->shape.domain_size);
-    AlignedBytes scratch(d->shape.scratch_size);
+    d->memory = Scratch(d->shape.domain_size);
+    Scratch scratch(d->shape.scratch_size);
     status = gim_open_detailed_domain(&info, file.data(), file.size(), index, 0, image.positions.data(),
-                                      d->displacements.data(), d->positions.data(), d->memory.get(), d->memory.size(),
-                                      scratch.get(), scratch.size(), &d->domain);
+                                      d->displacements.data(), d->positions.data(), d->memory.data(), d->memory.size(),
+                                      scratch.data(), scratch.size(), &d->domain);
     if (status != GIM_OK) return status;
     const auto most = static_cast<uint32_t>(std::min<uint64_t>(d->shape.most_triangles, kMostTriangles));
-    d->of_mesh = AlignedBytes(gim_refined_size(d->domain, most));
-    return gim_begin_refined(d->domain, most, d->of_mesh.get(), d->of_mesh.size(), &d->mesh);
+    d->of_mesh = Scratch(gim_refined_size(d->domain, most));
+    return gim_begin_refined(d->domain, most, d->of_mesh.data(), d->of_mesh.size(), &d->mesh);
 }
 
 // Which vertices the mesh needs: all samples of level 0, and those whose absence would show in the details.
@@ -91,22 +78,6 @@ struct Needs {
         return n.is_near[vertex] ? error / n.error : 0;
     }
 };
-
-// The vertex of each sample of the image, row by row; UINT32_MAX where there is none.
-std::vector<uint32_t> vertices_of_samples(const DetailedSurface& d) {
-    std::vector<float> halves(2 * size_t{d.shape.vertex_count}), laid(2 * size_t{d.shape.width} * d.shape.height);
-    for (uint32_t v = 0; v < d.shape.vertex_count; ++v) {  // floats hold halves of a number exactly
-        halves[2 * size_t{v}] = static_cast<float>(v >> 16);
-        halves[2 * size_t{v} + 1] = static_cast<float>(v & 0xFFFF);
-    }
-    gim_lay_out_samples(d.domain, halves.data(), 2, laid.data());
-    std::vector<uint32_t> vertices(laid.size() / 2, UINT32_MAX);
-    for (size_t i = 0; i < vertices.size(); ++i) {
-        if (laid[2 * i] == laid[2 * i])
-            vertices[i] = static_cast<uint32_t>(laid[2 * i]) << 16 | static_cast<uint32_t>(laid[2 * i + 1]);
-    }
-    return vertices;
-}
 
 // Calls f(vertex, row, column) for the samples of the cell of level 0 whose first sample is at (row, column) of the tile.
 template <class F>
@@ -130,7 +101,8 @@ Needs needs_of(const DetailedSurface& d) {
     Needs needs;
     needs.is_sample.resize(d.shape.vertex_count, false);
     needs.is_near.resize(d.shape.vertex_count, false);
-    const std::vector<uint32_t> vertex_at = vertices_of_samples(d);
+    std::vector<uint32_t> vertex_at(size_t{d.shape.width} * d.shape.height);
+    gim_read_sample_vertices(d.domain, vertex_at.data());
     const uint32_t cells = d.shape.intervals / d.parts;
     // The lossy code leaves next to nothing far around what was displaced: it is not worth a triangle.
     needs.error = std::max(kErrorOfDepth * largest_displacement(d), std::numeric_limits<float>::min());

@@ -1,57 +1,34 @@
 #include "encoder/emboss/finest_image.h"
 
-#include <memory>
-#include <new>
+#include <string>
 
 #include "gim/refine.h"
 
 namespace gim {
 namespace {
 
+static_assert(kNone == GIM_NOTHING);
+
 Error failed(gim_status status) {
     return {Stage::kInput, std::string("the .gim file does not decode: ") + gim_status_text(status)};
 }
-
-// Memory as the C interface wants it.
-class AlignedBytes {
-  public:
-    explicit AlignedBytes(uint64_t size) : bytes_(size / sizeof(Block) + 1) {}
-    void* get() { return bytes_.data(); }
-    size_t size() const { return bytes_.size() * sizeof(Block); }
-
-  private:
-    struct alignas(16) Block {
-        std::byte bytes[16];
-    };
-    std::vector<Block> bytes_;
-};
 
 gim_status read_places(const gim_info& info, std::span<const uint8_t> file, uint32_t image,
                        const std::vector<float>& positions, FinestImage* out) {
     gim_domain_info shape;
     gim_status status = gim_read_domain_info(&info, file.data(), file.size(), image, 0, &shape);
     if (status != GIM_OK) return status;
-    AlignedBytes memory(shape.domain_size), scratch(shape.scratch_size);
+    Scratch memory(shape.domain_size), scratch(shape.scratch_size);
     const gim_domain* domain = nullptr;
-    status = gim_open_domain(&info, file.data(), file.size(), image, 0, positions.data(), memory.get(), memory.size(),
-                             scratch.get(), scratch.size(), &domain);
+    status = gim_open_domain(&info, file.data(), file.size(), image, 0, positions.data(), memory.data(), memory.size(),
+                             scratch.data(), scratch.size(), &domain);
     if (status != GIM_OK) return status;
     out->width = shape.width;
     out->height = shape.height;
     out->tiles = shape.tile_count;
     out->intervals = shape.intervals;
-    // Numbers of vertices as floats are exact in two halves.
-    std::vector<float> halves(2 * size_t{shape.vertex_count}), laid(2 * size_t{shape.width} * shape.height);
-    for (uint32_t v = 0; v < shape.vertex_count; ++v) {
-        halves[2 * size_t{v}] = static_cast<float>(v >> 16);
-        halves[2 * size_t{v} + 1] = static_cast<float>(v & 0xFFFF);
-    }
-    gim_lay_out_samples(domain, halves.data(), 2, laid.data());
-    for (size_t i = 0; i < laid.size(); i += 2) {
-        const bool is_there = laid[i] == laid[i];
-        out->vertex_at.push_back(is_there ? static_cast<uint32_t>(laid[i]) << 16 | static_cast<uint32_t>(laid[i + 1])
-                                          : kNone);
-    }
+    out->vertex_at.resize(size_t{shape.width} * shape.height);
+    gim_read_sample_vertices(domain, out->vertex_at.data());
     return GIM_OK;
 }
 

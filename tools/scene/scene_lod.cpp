@@ -81,7 +81,7 @@ Result<void> SceneLod::begin() {
             bytes_ += size;
         }
         if (size == 0 ||
-            gim_begin_refined(surface.domain(), room, memory_.back().get(), memory_.back().size(), &mesh) != GIM_OK)
+            gim_begin_refined(surface.domain(), room, memory_.back().data(), memory_.back().size(), &mesh) != GIM_OK)
             return Error{Stage::kInput, "scene: instance " + std::to_string(i) +
                                             " has more triangles in its base than instance_triangles allows"};
         meshes_.push_back(mesh);

@@ -58,7 +58,7 @@ class SceneLod {
     const Scene& scene_;
     const std::vector<SceneSurface>& surfaces_;
     std::vector<Placement> placements_;
-    std::vector<AlignedMemory> memory_;
+    std::vector<Scratch> memory_;
     std::vector<gim_refined*> meshes_;
     std::vector<gim_patch> room_;                 // for the patches of one instance
     std::vector<std::vector<gim_patch>> listed_;  // per instance, as long as its mesh does not change

@@ -17,44 +17,44 @@ gim_status SceneSurface::open() {
     status = gim_read_level_info(&info_, file_.data(), file_.size(), 0, 0, &level);
     if (status != GIM_OK) return status;
     positions_.resize(3 * size_t{level.vertex_count});
-    AlignedMemory of_level(level.scratch_size);
+    Scratch of_level(level.scratch_size);
     status = gim_decode_mesh(&info_, file_.data(), file_.size(), 0, 0, positions_.data(), nullptr, nullptr, nullptr,
-                             of_level.get(), of_level.size());
+                             of_level.data(), of_level.size());
     if (status != GIM_OK) return status;
     gim_plane_info plane;
     status = gim_read_plane_info(&info_, file_.data(), file_.size(), 0, GIM_PLANE_DISPLACEMENTS, 0, &plane);
     if (status == GIM_OK) return open_details(plane);
     status = gim_read_domain_info(&info_, file_.data(), file_.size(), 0, 0, &shape_);
     if (status != GIM_OK) return status;
-    memory_ = AlignedMemory(shape_.domain_size);
-    AlignedMemory scratch(shape_.scratch_size);
-    return gim_open_domain(&info_, file_.data(), file_.size(), 0, 0, positions_.data(), memory_.get(), memory_.size(),
-                           scratch.get(), scratch.size(), &domain_);
+    memory_ = Scratch(shape_.domain_size);
+    Scratch scratch(shape_.scratch_size);
+    return gim_open_domain(&info_, file_.data(), file_.size(), 0, 0, positions_.data(), memory_.data(), memory_.size(),
+                           scratch.data(), scratch.size(), &domain_);
 }
 
 gim_status SceneSurface::open_details(const gim_plane_info& plane) {
     std::vector<float> displacements(3 * size_t{plane.width} * plane.height);
-    AlignedMemory of_plane(plane.scratch_size);
+    Scratch of_plane(plane.scratch_size);
     gim_status status = gim_decode_plane(&info_, file_.data(), file_.size(), 0, GIM_PLANE_DISPLACEMENTS, 0,
-                                         displacements.data(), of_plane.get(), of_plane.size());
+                                         displacements.data(), of_plane.data(), of_plane.size());
     if (status != GIM_OK) return status;
     status = gim_read_detailed_domain_info(&info_, file_.data(), file_.size(), 0, 0, &shape_);
     if (status != GIM_OK) return status;
     const std::vector<float> plain = std::move(positions_);
     positions_.assign(3 * size_t{shape_.vertex_count}, 0.0f);
-    memory_ = AlignedMemory(shape_.domain_size);
-    AlignedMemory scratch(shape_.scratch_size);
+    memory_ = Scratch(shape_.domain_size);
+    Scratch scratch(shape_.scratch_size);
     has_details_ = true;
     return gim_open_detailed_domain(&info_, file_.data(), file_.size(), 0, 0, plain.data(), displacements.data(),
-                                    positions_.data(), memory_.get(), memory_.size(), scratch.get(), scratch.size(),
+                                    positions_.data(), memory_.data(), memory_.size(), scratch.data(), scratch.size(),
                                     &domain_);
 }
 
 gim_status SceneSurface::refine_all() {
     const auto most = static_cast<uint32_t>(std::min<uint64_t>(shape_.most_triangles, UINT32_MAX / 4));
-    AlignedMemory memory(gim_refined_size(domain_, most));
+    Scratch memory(gim_refined_size(domain_, most));
     gim_refined* mesh = nullptr;
-    gim_status status = gim_begin_refined(domain_, most, memory.get(), memory.size(), &mesh);
+    gim_status status = gim_begin_refined(domain_, most, memory.data(), memory.size(), &mesh);
     if (status != GIM_OK) return status;
     gim_rule rule{};
     rule.need = [](void*, uint32_t, const float*, float, float) { return 2.0f; };

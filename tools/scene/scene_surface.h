@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gim/decoder.hpp"
 #include "gim/encoder.h"
 #include "gim/refine.h"
 #include "tools/file.h"
@@ -15,20 +16,6 @@
 namespace gim {
 
 inline constexpr uint32_t kDiscreteLevels = 4;
-
-// Aligned memory for the C interface.
-class AlignedMemory {
-  public:
-    explicit AlignedMemory(uint64_t size = 0) : blocks_(size / sizeof(Block) + 1) {}
-    void* get() { return blocks_.data(); }
-    size_t size() const { return blocks_.size() * sizeof(Block); }
-
-  private:
-    struct alignas(16) Block {
-        std::byte bytes[16];
-    };
-    std::vector<Block> blocks_;
-};
 
 class SceneSurface {
   public:
@@ -69,7 +56,7 @@ class SceneSurface {
     gim_info info_{};
     gim_domain_info shape_{};
     std::vector<float> positions_;
-    AlignedMemory memory_;
+    Scratch memory_;
     const gim_domain* domain_ = nullptr;
     std::array<double, 3> middle_ = {};
     bool has_details_ = false;

@@ -86,6 +86,10 @@ GIM_API gim_status gim_open_detailed_domain(const gim_info* info, const void* by
 GIM_API void gim_lay_out_samples(const gim_domain* domain, const float* of_vertices, uint32_t components,
                                  float* samples);
 
+/* The number of the vertex at each sample of the domain's image, row by row; GIM_NOTHING where no tile has one.
+ * vertices: width * height numbers. Cost: O(samples). */
+GIM_API void gim_read_sample_vertices(const gim_domain* domain, uint32_t* vertices);
+
 /* What a vertex is worth, in object units: `error` bounds how far the mesh errs at its sample and at all samples that can
  * only come after it, along the edges that they would split, while it is missing. `radius`: a ball around its position
  * holds them all, and the edge. Base vertices have 0. vertex: below vertex_count. */
