@@ -9,7 +9,6 @@
 #include "tools/commands.h"
 #include "tools/file.h"
 #include "tools/output_files.h"
-#include "tools/progress.h"
 #include "tools/scene/scene_run.h"
 #include "tools/stb.h"
 

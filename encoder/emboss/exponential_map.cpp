@@ -41,7 +41,8 @@ class Walk {
           radius_(radius),
           neighbours_(mesh),
           map_(mesh.positions.size(), Vec2::Constant(std::numeric_limits<double>::quiet_NaN())),
-          distance_(mesh.positions.size(), HUGE_VAL) {}
+          distance_(mesh.positions.size(), HUGE_VAL),
+          is_settled_(mesh.positions.size(), false) {}
 
     std::vector<Vec2> run() {
         for (const uint32_t v : mesh_.triangles[origin_.triangle]) {
@@ -74,7 +75,6 @@ class Walk {
     void settle(uint32_t v) {
         const bool is_start = std::find(is_start_.begin(), is_start_.end(), v) != is_start_.end();
         if (!is_start) map_[v] = mean_of_settled(v);
-        is_settled_.resize(map_.size(), false);
         is_settled_[v] = true;
         neighbours_.for_each(v, [&](uint32_t q) {
             if (!is_settled_[q]) reach(q, distance_[v] + (mesh_.positions[q] - mesh_.positions[v]).norm());

@@ -12,7 +12,6 @@
 #include <vector>
 
 namespace {
-
 // The library allocates nothing. An engine brings its own allocator; its blocks are aligned to 16 bytes.
 struct alignas(16) Block {
     unsigned char bytes[16];

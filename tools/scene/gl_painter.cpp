@@ -70,25 +70,14 @@ class GlPainter final : public ScenePainter {
     }
 
     Result<uint64_t> draw() override {
-        if (is_expanded_ && scene_.tessellates) {
-            frame_.begin(kSky);
-            tessellate_.draw(surface_);
-            glFinish();
-            const Result<void> checked = check_gl("drawing a frame");
-            if (!checked.ok()) return checked.error();
-            return uint64_t{0};
-        }
-        if (is_expanded_) expand_.expand(surface_);
-        if (const uint32_t needed = expand_.needed(); needed > expand_.capacity()) {
-            expand_.set_capacity(needed + needed / 4);
-            expand_.expand(surface_);
-        }
+        const bool by_tessellator = is_expanded_ && scene_.tessellates;
+        if (is_expanded_ && !by_tessellator) expand();
         frame_.begin(kSky);
-        expand_.draw(surface_);
+        by_tessellator ? tessellate_.draw(surface_) : expand_.draw(surface_);
         glFinish();
         const Result<void> checked = check_gl("drawing a frame");
         if (!checked.ok()) return checked.error();
-        return uint64_t{expand_.needed()};
+        return uint64_t{by_tessellator ? 0 : expand_.needed()};
     }
 
     std::vector<uint8_t> picture() const override {
@@ -112,6 +101,14 @@ class GlPainter final : public ScenePainter {
           tessellate_(std::move(tessellate)),
           frame_(std::move(frame)) {}
 
+    // Twice, if the triangles have no room at first.
+    void expand() {
+        expand_.expand(surface_);
+        const uint32_t needed = expand_.needed();
+        if (needed <= expand_.capacity()) return;
+        expand_.set_capacity(needed + needed / 4);
+        expand_.expand(surface_);
+    }
     // Puts the triangles of the chosen levels where expanded ones would be.
     void take_levels(const FramePatches& patches) {
         std::vector<std::array<uint32_t, 4>> triangles;

@@ -57,7 +57,8 @@ SceneLod::SceneLod(const Scene& scene, const std::vector<SceneSurface>& surfaces
     : scene_(scene),
       surfaces_(surfaces),
       pixels_per_unit_(scene.height / (2 * std::tan(radians(scene.field_of_view) / 2))),
-      pixel_error_(scene.pixel_error * (scene.gpu_refines ? kLeftToGpu : 1)) {
+      wanted_error_(scene.pixel_error * (scene.gpu_refines ? kLeftToGpu : 1)),
+      pixel_error_(wanted_error_) {
     for (const SceneInstance& instance : scene.instances)
         placements_.push_back(placement_of(instance, surfaces[instance.mesh], scene.meshes[instance.mesh].is_y_up));
 }
@@ -128,12 +129,11 @@ void SceneLod::refine(const CameraKey& camera, FramePatches* out) {
     }
     out->largest_error = pixel_error_;
     // The budget of the next frame: all instances err alike.
-    const double wanted = scene_.pixel_error * (scene_.gpu_refines ? kLeftToGpu : 1);
     const double share = double(out->triangles) / scene_.most_triangles;
     if (share > 1)
         pixel_error_ *= std::max(kOverBudget, share);
     else if (share < kRoom)
-        pixel_error_ = std::max(wanted, pixel_error_ * kUnderBudget);
+        pixel_error_ = std::max(wanted_error_, pixel_error_ * kUnderBudget);
 }
 
 void SceneLod::choose(LodWay way, const CameraKey& camera, FramePatches* out) {

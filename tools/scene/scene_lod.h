@@ -62,7 +62,8 @@ class SceneLod {
     std::vector<gim_refined*> meshes_;
     std::vector<gim_patch> room_;                 // for the patches of one instance
     std::vector<std::vector<gim_patch>> listed_;  // per instance, as long as its mesh does not change
-    double pixels_per_unit_ = 1, pixel_error_ = 1;
+    double pixels_per_unit_ = 1;
+    double wanted_error_ = 1, pixel_error_ = 1;  // that the CPU leaves: within the budget, and now
     uint64_t bytes_ = 0;
 };
 

@@ -21,7 +21,6 @@ struct Runner {
     const SceneRun& run;
     SceneLod& lod;
     ScenePainter* painter;  // nullptr: nothing is drawn
-    double begin, end;      // of the progress
 
     Result<std::vector<FrameFigures>> frames(LodWay way) {
         std::vector<FrameFigures> all;
@@ -49,7 +48,6 @@ struct Runner {
                 }
             }
             all.push_back(f);
-            if (run.progress) run.progress(begin + (end - begin) * (frame + 1) / scene.frames);
         }
         return all;
     }
@@ -76,14 +74,14 @@ Result<SceneFigures> run_scene(const Scene& scene, const SceneRun& run) {
         painter = std::move(made.value());
         figures.renderer = painter->renderer();
     }
-    const double ways = run.compares ? 3 : 1;
-    const std::pair<LodWay, std::vector<FrameFigures>*> all[] = {
+    Runner runner{scene, run, *lod.value(), painter.get()};
+    const std::pair<LodWay, std::vector<FrameFigures>*> ways[] = {
         {LodWay::kAdaptive, &figures.adaptive}, {LodWay::kDiscrete, &figures.discrete}, {LodWay::kFull, &figures.full}};
-    for (int i = 0; i < ways; ++i) {
-        Runner runner{scene, run, *lod.value(), painter.get(), i / ways, (i + 1) / ways};
-        Result<std::vector<FrameFigures>> frames = runner.frames(all[i].first);
+    for (const auto& [way, of_way] : ways) {
+        if (way != LodWay::kAdaptive && !run.compares) continue;
+        Result<std::vector<FrameFigures>> frames = runner.frames(way);
         if (!frames.ok()) return frames.error();
-        *all[i].second = std::move(frames.value());
+        *of_way = std::move(frames.value());
     }
     return figures;
 }

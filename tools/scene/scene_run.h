@@ -37,7 +37,6 @@ struct SceneRun {
     bool draws = true;                                          // false: only what the CPU does
     bool compares = true;                                       // also with four discrete levels and at full resolution
     std::function<Result<void>(const SceneFrame&)> take_frame;  // of the adaptive run; may be empty
-    std::function<void(double)> progress;                       // 0 .. 1; may be empty
 };
 
 Result<SceneFigures> run_scene(const Scene& scene, const SceneRun& run);

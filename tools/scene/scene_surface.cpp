@@ -67,13 +67,10 @@ gim_status SceneSurface::refine_all() {
     status = gim_read_patches(mesh, finest_patches_.data(), 2 * finest_triangles_, &count);
     finest_patches_.resize(count);
     sample_of_.resize(shape_.vertex_count);
-    const uint32_t slot = info_.layout == GIM_LAYOUT_TILES ? shape_.intervals + 1 : shape_.intervals;
-    const uint32_t columns = shape_.width / slot;
-    for (uint32_t h = 0; h < 3 * finest_triangles_; ++h) {
-        gim_half_edge edge;
-        (void)gim_read_half_edge(mesh, h, &edge);
-        const uint32_t row = edge.tile / columns * slot + edge.start[0];
-        sample_of_[edge.vertex] = row << 16 | (edge.tile % columns * slot + edge.start[1]);
+    std::vector<uint32_t> vertex_at(size_t{shape_.width} * shape_.height);
+    gim_read_sample_vertices(domain_, vertex_at.data());
+    for (uint32_t i = 0; i < vertex_at.size(); ++i) {
+        if (vertex_at[i] != GIM_NOTHING) sample_of_[vertex_at[i]] = i / shape_.width << 16 | i % shape_.width;
     }
     return status;
 }

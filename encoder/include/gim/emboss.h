@@ -42,8 +42,8 @@ struct Embossed {
 };
 
 // Returns the file with displacements; those that it has are kept and added to. Layouts `gim` and `tiles`.
-// The picture is laid on the surface by an exponential map, so it should be small against what it lies on. Where it lies on
-// an edge that is sharp, or ends, the picture ends. Cost: O(samples + texels).
+// The picture is laid on the surface by an exponential map, so it should be small against what it lies on. It ends where the
+// surface ends. Cost: O(samples + texels).
 // Errors: a file that does not decode, a layout without tiles, options out of range, a place that is not on the surface.
 Result<Embossed> emboss(std::span<const uint8_t> file, const HeightPicture& picture, const EmbossOptions& options);
 
