@@ -18,6 +18,11 @@ readonly GIM_GPU_PACKAGES=(
     libepoxy-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
 )
 
+# Of tools/npm.sh. The compiler and its libraries make WebAssembly; node and npm come from anywhere.
+readonly GIM_NPM_PACKAGES=(
+    clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32 binaryen brotli esbuild
+)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2

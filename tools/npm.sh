@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Builds the npm package: the decoder as WebAssembly, and the JavaScript around it, in build/npm/gim-VERSION.tgz.
+# Installs missing packages; needs no network but for that.
+# Usage: bash tools/npm.sh
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$GIM_ROOT"
+readonly BINDINGS=decoder/bindings PACKAGE=build/npm/package WORK=build/npm/work
+
+tracked() { git ls-files --cached --others --exclude-standard -- "$@" | grep '\.cpp$'; }
+
+# sources_of decoder|refine: what the entry is made of. The file that needs zstd has a stand-in.
+sources_of() {
+    tracked format decoder | grep -vE '^decoder/(unpack_text\.cpp|bindings/|refine|clusters)'
+    tracked "$BINDINGS/wasm"
+    [ "$1" = decoder ] || tracked decoder/refine decoder/refine.cpp decoder/clusters.cpp
+}
+
+# compile SOURCE OBJECT
+compile() {
+    local how=(-flto -Oz)
+    [ "${1##*/}" != memory.cpp ] || how=(-fno-builtin -Os)
+    clang++-14 --target=wasm32-wasi -std=c++20 "${how[@]}" -ffp-contract=off -fno-exceptions -fno-rtti -fno-math-errno \
+        -fvisibility=hidden -DNDEBUG -Wall -Wextra -I. -Idecoder/include -c "$1" -o "$2"
+}
+export -f compile
+
+# build_wasm decoder|refine: writes $WORK/NAME.wasm, and the same as a script, $WORK/NAME_wasm.js.
+build_wasm() {
+    local name=$1 source object objects=() pairs=() exports=()
+    mkdir -p "$WORK/$name"
+    while read -r source; do
+        object="$WORK/$name/${source//\//_}.o"
+        objects+=("$object")
+        pairs+=("$source" "$object")
+    done < <(sources_of "$name")
+    printf '%s\0' "${pairs[@]}" | xargs -0 -P "$(nproc)" -n 2 bash -c 'compile "$0" "$1"' || die "compiling failed"
+    mapfile -t exports < <(sed 's/^/--export=/' "$BINDINGS/wasm/$name.exports")
+    wasm-ld-14 --no-entry --stack-first -z stack-size=65536 --lto-O2 -O3 --gc-sections --strip-all \
+        "${exports[@]}" "${objects[@]}" -o "$WORK/$name.raw.wasm"
+    wasm-opt -Oz --converge "$WORK/$name.raw.wasm" -o "$WORK/$name.wasm"
+    node "$BINDINGS/wasm/embed.mjs" "$WORK/$name.wasm" "$WORK/${name}_wasm.js"
+}
+
+# bundle NAME FORMAT EXTENSION: one script of an entry, with its WebAssembly inside.
+bundle() {
+    esbuild "$BINDINGS/npm/$1.js" --bundle --minify --target=es2020 --log-level=warning --charset=ascii \
+        --alias:gim-wasm="./$WORK/$1_wasm.js" --format="$2" --outfile="$PACKAGE/$1.$3"
+}
+
+install_packages "${GIM_NPM_PACKAGES[@]}"
+rm -rf "$PACKAGE" build/npm/*.tgz
+mkdir -p "$PACKAGE" "$WORK"
+cp LICENSE "$BINDINGS"/npm/{package.json,README.md} "$BINDINGS"/npm/*.d.ts "$PACKAGE"
+for entry in decoder; do
+    say "WebAssembly of gim/$entry"
+    build_wasm "$entry"
+    bundle "$entry" esm mjs
+    bundle "$entry" cjs cjs
+    printf '%s.mjs: %s bytes, %s with brotli\n' "$entry" "$(wc -c <"$PACKAGE/$entry.mjs")" \
+        "$(brotli -q 11 -w 24 -c "$PACKAGE/$entry.mjs" | wc -c)"
+done
+(cd "$PACKAGE" && npm pack --silent --pack-destination ..) >/dev/null || die "npm pack failed"
+ls build/npm/*.tgz
