@@ -9,9 +9,9 @@ readonly BINDINGS=decoder/bindings PACKAGE=build/npm/package WORK=build/npm/work
 
 tracked() { git ls-files --cached --others --exclude-standard -- "$@" | grep '\.cpp$'; }
 
-# sources_of decoder|refine: what the entry is made of. The file that needs zstd has a stand-in.
+# sources_of decoder|refine: what the entry is made of. Checksums and the file that needs zstd have stand-ins.
 sources_of() {
-    tracked format decoder | grep -vE '^decoder/(unpack_text\.cpp|bindings/|refine|clusters)'
+    tracked format decoder | grep -vE '^(format/checksum\.cpp|decoder/(unpack_text\.cpp|bindings/|refine|clusters))'
     tracked "$BINDINGS/wasm"
     [ "$1" = decoder ] || tracked decoder/refine decoder/refine.cpp decoder/clusters.cpp
 }

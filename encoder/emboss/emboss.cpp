@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "encoder/code/assemble_file.h"
+#include "encoder/code/measure_boxes.h"
 #include "encoder/emboss/code_displacements.h"
 #include "encoder/emboss/exponential_map.h"
 #include "encoder/emboss/finest_image.h"
@@ -219,9 +220,8 @@ Result<Embossed> emboss(std::span<const uint8_t> file, const HeightPicture& pict
     heights.filter_for(embossed.spacing);
 
     // The header's step turns units into object space.
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
     Header header;
-    if (parse_header(file, no_limits, &header) != Status::kOk) return wrong("the .gim file is damaged");
+    if (parse_header(file, kNoLimits, &header) != Status::kOk) return wrong("the .gim file is damaged");
     std::vector<Displacements> planes;
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         std::optional<FinestImage> other;
@@ -260,6 +260,8 @@ Result<Embossed> emboss(std::span<const uint8_t> file, const HeightPicture& pict
     GIM_TRY(coded, code_displacements(file, planes, quantizer));
     embossed.plane_bytes = coded.payload.size();
     embossed.bytes = replace_planes(file, std::span(&coded, 1));
+    GIM_TRY(boxes, measure_boxes(embossed.bytes));
+    embossed.bytes = set_boxes(embossed.bytes, boxes);
     return embossed;
 }
 

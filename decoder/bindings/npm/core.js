@@ -69,8 +69,26 @@ export function makeCore(wasm, fail) {
     fields.coding = fields.coding ? "lossy" : "lossless";
     fields.isRelative = fields.isRelative === 1;
     fields.origin = Array.from(numbers.slice(12, 15));
-    fields.levelPsnr = Array.from(numbers.slice(15, 15 + fields.levelCount));
+    const errors = (at) => Array.from(numbers.slice(at, at + fields.levelCount));
+    fields.levelRmsError = errors(15);
+    fields.levelMaxError = errors(29);
+    fields.hasBoxes = numbers[43] === 1;
+    fields.box = boxAt(numbers, 44);
     return fields;
+  }
+  const boxAt = (numbers, at) => ({
+    low: Array.from(numbers.slice(at, at + 3)),
+    high: Array.from(numbers.slice(at + 3, at + 6)),
+  });
+  function box(file) {
+    check(wasm.gim_js_box(file.session, file.at, file.size, file.image));
+    return boxAt(new Float64Array(wasm.memory.buffer, file.session, 64), 0);
+  }
+  function chooseLevel(file, request) {
+    const { distance, verticalFov, viewportHeight, pixelError, shown } = request;
+    const last = 0x7fffffff; // GIM_NO_LEVEL
+    return wasm.gim_js_choose(file.session, distance, verticalFov, viewportHeight, pixelError,
+      whole(shown, "shown", last, last));
   }
   function levelInfo(file) {
     check(wasm.gim_js_level(file.session, file.at, file.size, file.image, file.level));
@@ -143,7 +161,7 @@ export function makeCore(wasm, fail) {
   }
 
   const requests = {
-    info, levelInfo, planeInfo, plane, seams, text,
+    info, box, chooseLevel, levelInfo, planeInfo, plane, seams, text,
     mesh: (file, request) => surface(file, request, "mesh"),
     hardMesh: (file, request) => surface(file, request, "hardMesh"),
     grid: (file, request) => surface(file, request, "grid"),

@@ -94,8 +94,37 @@ export interface GimInfo {
   indexSize: number;
   /** Where coordinates of 0 units lie, in object units. */
   origin: [number, number, number];
-  /** Of each level, finest first: PSNR in dB against the encoder's input, rounded down. 0: the file does not say. */
-  levelPsnr: number[];
+  /**
+   * Of each level, finest first: distance in object units between its surface and the encoder's input, root of the mean
+   * square, the larger of both ways, as the encoder measured it. 0: the file does not say.
+   */
+  levelRmsError: number[];
+  /** The same, the largest distance. */
+  levelMaxError: number[];
+  /** Whether the file tells the boxes of all its images. False: boxes are without end. */
+  hasBoxes: boolean;
+  /** Holds the boxes of all images. */
+  box: GimBox;
+}
+
+/** A box along the axes, in the coordinates of decoded positions. */
+export interface GimBox {
+  low: [number, number, number];
+  high: [number, number, number];
+}
+
+/** How a camera sees a surface. */
+export interface GimView {
+  /** From the eye to the nearest point of the surface, or of its box; object units. */
+  distance: number;
+  /** Radians; that of the viewport's height. */
+  verticalFov: number;
+  /** Pixels. */
+  viewportHeight: number;
+  /** How large `levelMaxError` may be on the screen, pixels. */
+  pixelError: number;
+  /** The level shown before; left out if there is none. */
+  shown?: number;
 }
 
 /** One level of one image. */
@@ -183,6 +212,14 @@ export interface GimDecoderType {
 
   /** Reads header and index. Needs `indexSize` bytes, which are hardly ever more than a hundred. */
   info(bytes: GimBytes, options?: GimLimits): GimInfo;
+  /** A box that holds an image at each of its levels. Needs header and index only. */
+  box(bytes: GimBytes, options?: GimLimits & { image?: number }): GimBox;
+  /**
+   * The coarsest level whose largest error is at most `pixelError` on the screen; 0 if there is none. A coarser one
+   * replaces `shown` only if its error is at most 3/4 of that, so a surface near the limit does not change back and forth.
+   * The level is the file's: do not show an image beyond its `coarsestLevel`. Needs header and index only.
+   */
+  chooseLevel(bytes: GimBytes, view: GimView & GimLimits): number;
   /** Needs the chunk of seams, which is near the start of the file. NO_SUCH_LEVEL beyond `coarsestLevel`. */
   levelInfo(bytes: GimBytes, options?: GimLevelOptions): GimLevelInfo;
   /** NO_SUCH_PLANE if the file has none of that kind. */

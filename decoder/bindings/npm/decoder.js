@@ -24,6 +24,8 @@ export const GimDecoder = {
   supported: instance.supported,
   ready: instance.ready,
   info: call("info"),
+  box: call("box"),
+  chooseLevel: call("chooseLevel"),
   levelInfo: call("levelInfo"),
   planeInfo: call("planeInfo"),
   decodePositions: call("positions"),

@@ -27,6 +27,11 @@ class Row {
     double* next_;
 };
 
+void add_box(Row& row, const gim_box& box) {
+    for (const float low : box.low) row.add(low);
+    for (const float high : box.high) row.add(high);
+}
+
 }  // namespace
 
 extern "C" {
@@ -43,8 +48,26 @@ gim_status gim_js_info(Session* session, const void* bytes, size_t size, double 
     row.add(info.version, info.layout, info.coding, info.bits, info.image_count, info.level_count, info.sample_count,
             info.file_size, info.is_relative, info.step, info.quantizer, info.index_size);
     for (const double origin : info.origin) row.add(origin);
-    for (const float psnr : info.level_psnr) row.add(psnr);
+    for (const float error : info.level_rms_error) row.add(error);
+    for (const float error : info.level_max_error) row.add(error);
+    row.add(info.has_boxes);
+    add_box(row, info.box);
     return status;
+}
+
+gim_status gim_js_box(Session* session, const void* bytes, size_t size, uint32_t image) {
+    gim_box box;
+    const gim_status status = gim_read_box(&session->info, bytes, size, image, &box);
+    if (status != GIM_OK) return status;
+    Row row(session);
+    add_box(row, box);
+    return status;
+}
+
+uint32_t gim_js_choose(Session* session, float distance, float vertical_fov, float viewport_height, float pixel_error,
+                       uint32_t shown) {
+    const gim_view view = {distance, vertical_fov, viewport_height, pixel_error};
+    return gim_choose_level(&session->info, &view, shown);
 }
 
 gim_status gim_js_level(Session* session, const void* bytes, size_t size, uint32_t image, uint32_t level) {
