@@ -48,6 +48,19 @@ bundle() {
         --alias:gim-wasm="./$WORK/$1_wasm.js" --format="$2" --outfile="$PACKAGE/$1.$3"
 }
 
+# bundle_around_decoder NAME: both scripts of an entry that calls gim/decoder. All entries of a page share one decoder.
+bundle_around_decoder() {
+    local format extension
+    for format in esm:mjs cjs:cjs; do
+        extension=${format#*:}
+        esbuild "$BINDINGS/npm/$1.js" --bundle --minify --target=es2020 --log-level=warning --charset=ascii \
+            --external:gim/* --external:three --format="${format%:*}" --outfile="$PACKAGE/$1.$extension"
+        sed -i -E "s#([\"'])gim/(decoder|source)\1#\"./\2.$extension\"#g" "$PACKAGE/$1.$extension"
+    done
+    printf '%s.mjs: %s bytes, %s with brotli\n' "$1" "$(wc -c <"$PACKAGE/$1.mjs")" \
+        "$(brotli -q 11 -w 24 -c "$PACKAGE/$1.mjs" | wc -c)"
+}
+
 install_packages "${GIM_NPM_PACKAGES[@]}"
 rm -rf "$PACKAGE" build/npm/*.tgz
 mkdir -p "$PACKAGE" "$WORK"
@@ -59,6 +72,9 @@ for entry in decoder; do
     bundle "$entry" cjs cjs
     printf '%s.mjs: %s bytes, %s with brotli\n' "$entry" "$(wc -c <"$PACKAGE/$entry.mjs")" \
         "$(brotli -q 11 -w 24 -c "$PACKAGE/$entry.mjs" | wc -c)"
+done
+for entry in source three; do
+    bundle_around_decoder "$entry"
 done
 (cd "$PACKAGE" && npm pack --silent --pack-destination ..) >/dev/null || die "npm pack failed"
 ls build/npm/*.tgz

@@ -84,6 +84,17 @@ export function makeCore(wasm, fail) {
     check(wasm.gim_js_box(file.session, file.at, file.size, file.image));
     return boxAt(new Float64Array(wasm.memory.buffer, file.session, 64), 0);
   }
+  function chunks(file) {
+    const numbers = new Float64Array(wasm.memory.buffer, file.session, 64);
+    const count = numbers[50], indexSize = numbers[11], found = [];
+    for (let i = 0; i < count; ++i) {
+      check(wasm.gim_js_chunk(file.session, file.at, indexSize, i));
+      const chunk = record(file, ["name", "level", "offset", "size"]);
+      chunk.name = ["SEAM", "LEVL", "META", "NRML", "COLR", "DISP"][chunk.name] || "????";
+      found.push(chunk);
+    }
+    return found;
+  }
   function chooseLevel(file, request) {
     const { distance, verticalFov, viewportHeight, pixelError, shown } = request;
     const last = 0x7fffffff; // GIM_NO_LEVEL
@@ -161,7 +172,7 @@ export function makeCore(wasm, fail) {
   }
 
   const requests = {
-    info, box, chooseLevel, levelInfo, planeInfo, plane, seams, text,
+    info, box, chunks, chooseLevel, levelInfo, planeInfo, plane, seams, text,
     mesh: (file, request) => surface(file, request, "mesh"),
     hardMesh: (file, request) => surface(file, request, "hardMesh"),
     grid: (file, request) => surface(file, request, "grid"),

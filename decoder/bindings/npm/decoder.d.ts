@@ -113,6 +113,17 @@ export interface GimBox {
   high: [number, number, number];
 }
 
+/** A part of the file. Chunks lie one after the other behind the index. */
+export interface GimChunk {
+  /** Seams, a level, text, or a plane: normals, colours, displacements. */
+  name: "SEAM" | "LEVL" | "META" | "NRML" | "COLR" | "DISP" | "????";
+  /** Of LEVL; else -1. */
+  level: number;
+  /** Its first byte in the file. */
+  offset: number;
+  size: number;
+}
+
 /** How a camera sees a surface. */
 export interface GimView {
   /** From the eye to the nearest point of the surface, or of its box; object units. */
@@ -214,6 +225,8 @@ export interface GimDecoderType {
   info(bytes: GimBytes, options?: GimLimits): GimInfo;
   /** A box that holds an image at each of its levels. Needs header and index only. */
   box(bytes: GimBytes, options?: GimLimits & { image?: number }): GimBox;
+  /** What the file consists of, in its order. Needs header and index only. */
+  chunks(bytes: GimBytes, options?: GimLimits): GimChunk[];
   /**
    * The coarsest level whose largest error is at most `pixelError` on the screen; 0 if there is none. A coarser one
    * replaces `shown` only if its error is at most 3/4 of that, so a surface near the limit does not change back and forth.

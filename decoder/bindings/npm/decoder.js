@@ -25,6 +25,7 @@ export const GimDecoder = {
   ready: instance.ready,
   info: call("info"),
   box: call("box"),
+  chunks: call("chunks"),
   chooseLevel: call("chooseLevel"),
   levelInfo: call("levelInfo"),
   planeInfo: call("planeInfo"),

@@ -52,6 +52,7 @@ gim_status gim_js_info(Session* session, const void* bytes, size_t size, double 
     for (const float error : info.level_max_error) row.add(error);
     row.add(info.has_boxes);
     add_box(row, info.box);
+    row.add(info.chunk_count);
     return status;
 }
 
@@ -61,6 +62,14 @@ gim_status gim_js_box(Session* session, const void* bytes, size_t size, uint32_t
     if (status != GIM_OK) return status;
     Row row(session);
     add_box(row, box);
+    return status;
+}
+
+// What a chunk is (the number of its type), which level (-1: none), where it begins and how long it is.
+gim_status gim_js_chunk(Session* session, const void* bytes, size_t size, uint32_t i) {
+    gim_chunk chunk;
+    const gim_status status = gim_read_chunk(&session->info, bytes, size, i, &chunk);
+    if (status == GIM_OK) Row(session).add(chunk.type, chunk.level, chunk.offset, chunk.size);
     return status;
 }
 
