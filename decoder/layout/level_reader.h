@@ -45,13 +45,6 @@ struct SurfaceArrays {
     uint32_t* hard_vertices = nullptr;
 };
 
-// Turns `count` triples from units into object space.
-inline void to_object(const std::array<float, 3> origin, float step, const float* units, float* __restrict positions,
-                      size_t count = 1) {
-    for (size_t i = 0; i < count; ++i)
-        for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
-}
-
 struct LevelReader {
     Status (*level_info)(const LevelRequest& request, gim_level_info* info);
     Status (*mesh)(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);

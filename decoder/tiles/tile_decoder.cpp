@@ -123,11 +123,6 @@ const TileArithmetic& arithmetic_of(const Header& header) {
     return header.tiles.is_sharp ? kTilesSharp : kTiles97;
 }
 
-// Turns the decoded samples into units.
-float* finish(const TileArithmetic& arithmetic, void* samples, size_t count) {
-    return arithmetic.is_integer() ? to_units<int32_t>(samples, count) : to_units<float>(samples, count);
-}
-
 Status decode_levels(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws) {
     TileDecoder decoder(
         {header.tiles, detail_coding_of(header), tile_kind_of(header), 1 << (header.bits - 1), arithmetic_of(header)},
@@ -191,7 +186,7 @@ Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_
     if (Status s = read_complex(header, file, ws); s != Status::kOk) return s;
     if (Status s = decode_levels(header, file, level, ws); s != Status::kOk) return s;
     const size_t side = header.tiles.intervals(level) + 1;
-    *samples = finish(arithmetic_of(header), ws.samples[0], ws.complex.tiles * side * side * 3);
+    *samples = to_units(header.coding == Coding::kLossless, ws.samples[0], ws.complex.tiles * side * side * 3);
     return Status::kOk;
 }
 
@@ -201,7 +196,7 @@ Status decode_tile_samples(const TileShape& shape, const PlaneChunk& plane, uint
     RangeDecoder coder(plane.stream);
     if (!decoder.decode(coder, level) || !coder.intact()) return Status::kMalformed;
     const size_t side = shape.intervals(level) + 1;
-    *samples = finish(kTiles97, ws.samples[0], ws.complex.tiles * side * side * 3);
+    *samples = to_units(false, ws.samples[0], ws.complex.tiles * side * side * 3);
     return Status::kOk;
 }
 
