@@ -18,6 +18,11 @@ readonly GIM_GPU_PACKAGES=(
     libepoxy-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
 )
 
+# Of `tools/test.sh cross`.
+readonly GIM_CROSS_PACKAGES=(
+    gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
+)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2
