@@ -23,6 +23,11 @@ readonly GIM_NPM_PACKAGES=(
     clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32 binaryen brotli esbuild
 )
 
+# Of `tools/test.sh cross`.
+readonly GIM_CROSS_PACKAGES=(
+    gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
+)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2
