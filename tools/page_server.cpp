@@ -1,6 +1,7 @@
 #include "tools/page_server.h"
 
 #include <httplib.h>
+#include <sys/socket.h>
 
 #include <cctype>
 #include <filesystem>
@@ -59,6 +60,11 @@ struct PageServer::State {
 PageServer::PageServer(const std::string& folder) : state_(std::make_unique<State>()) {
     State& state = *state_;
     state.server.set_mount_point("/", folder, {{"Cache-Control", "no-cache"}});
+    // Not the library's default, which shares a port that is taken.
+    state.server.set_socket_options([](socket_t socket) {
+        const int yes = 1;
+        setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
     state.server.set_default_headers({{"Cache-Control", "no-cache"}});
     state.server.Get("/file/(.*)", [&state](const httplib::Request& request, httplib::Response& response) {
         state.send_file(request, response);

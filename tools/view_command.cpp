@@ -35,7 +35,7 @@ Result<void> check_gim(const std::string& path) {
     if (!bytes.ok()) return bytes.error();
     gim_info info;
     const gim_status status = gim_read_info(bytes.value().data(), bytes.value().size(), nullptr, &info);
-    if (status != GIM_OK) return Error{Stage::kRead, gim_status_text(status)};
+    if (status != GIM_OK) return Error{Stage::kInput, gim_status_text(status)};
     return {};
 }
 
@@ -46,7 +46,7 @@ int run_view(const ViewCommand& command) {
     if (page.empty() || !is_page(page)) {
         return report_error(
             page.empty() ? "the viewer" : page.string(),
-            {Stage::kRead,
+            {Stage::kInput,
              "its page is not there; build it with: bash tools/viewer/build.sh (needs node and npm), or "
              "name its folder with --page"});
     }
