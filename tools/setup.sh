@@ -23,6 +23,9 @@ readonly GIM_NPM_PACKAGES=(
     clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32 binaryen brotli esbuild
 )
 
+# Of `tools/test.sh web`, besides those of tools/npm.sh.
+readonly GIM_WEB_PACKAGES=(g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2
