@@ -3,6 +3,7 @@
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
 # Usage: bash tools/test.sh         all of this
 #        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+#        bash tools/test.sh web     only the npm package, in Node and in Chromium; two minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -36,10 +37,30 @@ test_gpu() {
     (test_in_browser)
 }
 
+# The npm package. What wants a browser skips, and says so, where there is none.
+test_web() {
+    local name damaged="$GIM_ROOT/build/web/damaged"
+    install_packages "${GIM_WEB_PACKAGES[@]}"
+    for name in node:nodejs npm:npm chromium:chromium; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") || say "Skipped: no ${name%%:*}"
+    done
+    command -v node >/dev/null && command -v npm >/dev/null ||
+        { say "Skipped: the npm package stays untested" && return 0; }
+    configure_and_build web
+    "$GIM_ROOT/build/web/tests/web/write_damaged" "$GIM_ROOT/spec/vectors" "$damaged" || die "write_damaged failed"
+    bash "$GIM_ROOT/tools/npm.sh" || die "building the npm package failed"
+    cd "$GIM_ROOT/tests/web"
+    [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund ||
+        { say "Skipped: npm cannot fetch the bundlers, so the npm package stays untested" && return 0; }
+    say "Tests of the npm package"
+    GIM_CHROMIUM="$(command -v chromium || true)" node --test --test-reporter=spec || die "the tests of the npm package failed"
+}
+
 case "${1:-}" in
     "") ;;
     gpu) test_gpu && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu]" ;;
+    web) (test_web) && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gpu | web]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14

@@ -13,7 +13,7 @@ export const packageFolder = process.env.GIM_PACKAGE ?? join(build, "npm/package
 export const damagedFolder = process.env.GIM_DAMAGED ?? join(build, "web/damaged");
 export const vectorsFolder = join(here, "../../spec/vectors");
 export const tgz = process.env.GIM_TGZ ?? join(build, "npm", readdirSync(join(build, "npm")).find((n) => n.endsWith(".tgz")));
-const executablePath = process.env.GIM_CHROMIUM ?? "/usr/bin/chromium";
+const executablePath = process.env.GIM_CHROMIUM || "/usr/bin/chromium";
 export const noBrowser = existsSync(executablePath) ? false : `no browser at ${executablePath}`;
 
 // What checkAll of decode_all.mjs wants to know of spec/vectors.
@@ -51,7 +51,7 @@ export async function serve(roots, policy) {
     }
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  return { address: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
+  return { address: `http://127.0.0.1:${server.address().port}`, close: () => (server.close(), server.closeAllConnections()) };
 }
 
 export function launch() {
