@@ -34,7 +34,7 @@ export function vectorNames() {
 export const vector = (name) => readFileSync(join(vectorsFolder, "valid", name));
 export const importEntry = (name) => import(join(packageFolder, `${name}.mjs`));
 
-const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json" };
+const types = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json" };
 
 // Sends a file, or the range of it that is asked for.
 function send(request, response, bytes, headers) {
