@@ -144,6 +144,14 @@ class Limits(NamedTuple):
     max_memory: Optional[int] = None
 
 
+def _checked(limits):
+    limits = Limits() if limits is None else limits
+    for name, value, bits in zip(Limits._fields, limits, (64, 32, 32, 64)):
+        if value is not None and not 0 <= value < 2 ** bits:
+            raise ValueError(f"{name} must be from 0 to 2^{bits} - 1, not {value}")
+    return limits
+
+
 class _Budget:
     """Hands out the memory of one call."""
 
@@ -379,7 +387,7 @@ class File:
     The bytes that it was opened with must not change while it is used; they are not copied."""
 
     def __init__(self, data, limits=None):
-        self._limits = limits if limits is not None else Limits()
+        self._limits = _checked(limits)
         self._data = np.frombuffer(data, np.uint8) if memoryview(data).nbytes else np.zeros(0, np.uint8)
         self._read = _Info()
         of_file = _Limits(*self._limits[:3])
@@ -510,7 +518,7 @@ def open(source, limits=None):
     if isinstance(source, File):
         return source
     if isinstance(source, (str, os.PathLike)):
-        source = _read_file(source, limits if limits is not None else Limits())
+        source = _read_file(source, _checked(limits))
     return File(source, limits)
 
 
@@ -552,7 +560,7 @@ def decode_batch(items, level=0, dtype=np.float32, layout="HWC", channels="xyz",
         raise ValueError('layout must be "HWC" or "CHW", channels "xyz" or "xyzm"')
     if threads < 0:
         raise ValueError("threads must not be negative")
-    limits = limits if limits is not None else Limits()
+    limits = _checked(limits)
     budget = _SharedBudget(limits)
     first = _batch_image(items, 0, limits)._level(level)
     grid = (first.height, first.width)
@@ -669,10 +677,10 @@ class _Batch:
 def encode(vertices, faces, *, normals=None, colors=None, program=None, timeout=None, **options):
     """Encodes a triangle mesh by the program `gim encode`: the bytes of a .gim file.
 
-    vertices   n x 3 numbers, float64 kept as such
+    vertices   n x 3 numbers; the program gets float32 as it is and others as float64
     faces      m x 3 whole numbers, counter-clockwise seen from outside; m x 4 for quads
     normals    n x 3 numbers: of the vertices, for hard edges of tiles
-    colors     n x 3 or n x 4 uint8: red, green, blue of the vertices
+    colors     n x 3 uint8: red, green, blue of the vertices
     program    the program; else GIM_PROGRAM names it, else it is looked for in PATH
     timeout    seconds, then subprocess.TimeoutExpired is raised
     options    those of `gim encode --help` with _ for -: psnr=70, size=257, layout="tiles", max_error="0.3%",
@@ -718,7 +726,8 @@ def _rows(name, values, columns, dtype, count=None):
 
 def _ply(vertices, faces, normals, colors):
     """The mesh as a binary PLY file."""
-    kind = "<f8" if np.asarray(vertices).dtype == np.float64 else "<f4"
+    vertices = np.asarray(vertices)
+    kind = "<f4" if vertices.dtype.kind == "f" and vertices.dtype.itemsize < 8 else "<f8"
     vertices = _rows("vertices", vertices, (3,), kind)
     faces = np.asarray(faces)
     if faces.size and (faces.dtype.kind not in "iu" or faces.min() < 0 or faces.max() >= min(len(vertices), 2 ** 31)):
@@ -737,7 +746,7 @@ def _ply(vertices, faces, normals, colors):
         if colors.dtype != np.uint8:
             raise ValueError("colors must be uint8")
         fields.append(("color", "u1", 3))
-        values.append(_rows("colors", colors, (3, 4), "u1", len(vertices))[:, :3])
+        values.append(_rows("colors", colors, (3,), "u1", len(vertices)))
         header += [f"property uchar {name}" for name in ("red", "green", "blue")]
     header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
     rows = np.empty(len(vertices), fields)
