@@ -1,4 +1,4 @@
-# Sourced by quickstart.sh, test.sh and lint.sh. Installs missing Debian packages, reports progress, finds the tree.
+# Sourced by the other scripts of this folder. Installs missing Debian packages, reports progress, finds the tree.
 # Needs only bash, git and apt. Calls apt only if a package is missing.
 
 GIM_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -17,6 +17,9 @@ readonly GIM_GPU_PACKAGES=(
     g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev
     libepoxy-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
 )
+
+# Of tools/package.sh, besides what the build needs.
+readonly GIM_PACKAGE_PACKAGES=(dpkg-dev debhelper dh-python python3)
 
 say() { printf '\n== %s\n' "$*"; }
 die() {

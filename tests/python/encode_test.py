@@ -54,9 +54,10 @@ class Encode(unittest.TestCase):
         quads = np.stack([i * 8 + j, (i + 1) % 12 * 8 + j, (i + 1) % 12 * 8 + (j + 1) % 8, i * 8 + (j + 1) % 8], -1)
         colors = np.zeros((len(vertices), 3), np.uint8)
         colors[:, 1] = 200
-        data = gim.encode(vertices, quads.reshape(-1, 4), colors=colors, normals=vertices, colors_side=None, **FAST)
+        data = gim.encode(vertices, quads.reshape(-1, 4), vertex_colors=colors, vertex_normals=vertices, normals=17, **FAST)
         file = gim.open(data)
-        self.assertIn("colors", file.planes)
+        self.assertEqual(file.planes, ("normals", "colors"))
+        self.assertEqual(file.plane("normals").shape, (17, 17, 3))
         mean = file.plane("colors").mean(axis=(0, 1))
         self.assertTrue(np.allclose(mean, (0, 200 / 255, 0), atol=0.05), mean)
 
@@ -91,9 +92,9 @@ class Encode(unittest.TestCase):
             with self.assertRaises(ValueError):
                 gim.encode(v, f, **FAST)
         with self.assertRaises(ValueError):
-            gim.encode(vertices, faces, colors=np.zeros((3, 3), np.uint8), **FAST)
+            gim.encode(vertices, faces, vertex_colors=np.zeros((3, 3), np.uint8), **FAST)
         with self.assertRaises(ValueError):
-            gim.encode(vertices, faces, colors=np.zeros((len(vertices), 3)), **FAST)
+            gim.encode(vertices, faces, vertex_colors=np.zeros((len(vertices), 3)), **FAST)
         with self.assertRaises(gim.Error):
             gim.encode(np.zeros((0, 3)), np.zeros((0, 3), int), **FAST)
         with self.assertRaises(gim.Error):

@@ -674,23 +674,23 @@ class _Batch:
 
 # ---- encoding --------------------------------------------------------------------------------------------------------
 
-def encode(vertices, faces, *, normals=None, colors=None, program=None, timeout=None, **options):
+def encode(vertices, faces, *, vertex_normals=None, vertex_colors=None, program=None, timeout=None, **options):
     """Encodes a triangle mesh by the program `gim encode`: the bytes of a .gim file.
 
     vertices   n x 3 numbers; the program gets float32 as it is and others as float64
     faces      m x 3 whole numbers, counter-clockwise seen from outside; m x 4 for quads
-    normals    n x 3 numbers: of the vertices, for hard edges of tiles
-    colors     n x 3 uint8: red, green, blue of the vertices
+    vertex_normals  n x 3 numbers: they tell which edges are hard
+    vertex_colors   n x 3 uint8: red, green, blue
     program    the program; else GIM_PROGRAM names it, else it is looked for in PATH
     timeout    seconds, then subprocess.TimeoutExpired is raised
     options    those of `gim encode --help` with _ for -: psnr=70, size=257, layout="tiles", max_error="0.3%",
-               lossless=True. None and False leave an option out
+               lossless=True, normals=512 (the side of a normal map). None and False leave an option out
 
     The mesh goes to the program through a pipe; no file is written. What the program warns of comes as UserWarning. If it
     fails, gim.Error has its message and its exit_status."""
     command = [_find_program(program), "encode", "-", "-", "--format=ply", "--quiet"]
     command += [word for name, value in options.items() for word in _option(name, value)]
-    run = subprocess.run(command, input=_ply(vertices, faces, normals, colors), stdout=subprocess.PIPE,
+    run = subprocess.run(command, input=_ply(vertices, faces, vertex_normals, vertex_colors), stdout=subprocess.PIPE,
                          stderr=subprocess.PIPE, timeout=timeout, check=False)
     message = run.stderr.decode("utf-8", "replace").strip()
     if run.returncode != 0:
@@ -739,14 +739,14 @@ def _ply(vertices, faces, normals, colors):
     header += [f"property {word} {axis}" for axis in "xyz"]
     if normals is not None:
         fields.append(("normal", "<f4", 3))
-        values.append(_rows("normals", normals, (3,), "<f4", len(vertices)))
+        values.append(_rows("vertex_normals", normals, (3,), "<f4", len(vertices)))
         header += [f"property float n{axis}" for axis in "xyz"]
     if colors is not None:
         colors = np.asarray(colors)
         if colors.dtype != np.uint8:
-            raise ValueError("colors must be uint8")
+            raise ValueError("vertex_colors must be uint8")
         fields.append(("color", "u1", 3))
-        values.append(_rows("colors", colors, (3,), "u1", len(vertices)))
+        values.append(_rows("vertex_colors", colors, (3,), "u1", len(vertices)))
         header += [f"property uchar {name}" for name in ("red", "green", "blue")]
     header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
     rows = np.empty(len(vertices), fields)
