@@ -79,6 +79,7 @@ def page(name, lines, version, others):
     arguments = "[" + arguments
     about = " ".join(lines[:usage])
     summary = re.split(r"\.(?:\s|$)", about)[0]
+    summary = summary.removeprefix(name + " ")
     out = [f'.TH {name.upper()} 1 "" "gim {version}" "User Commands"', ".SH NAME",
            f"{escaped(name)} \\- {escaped(summary[0].lower() + summary[1:])}",
            ".SH SYNOPSIS", f"\\fB{escaped(called)}\\fR {escaped(arguments)}",
