@@ -4,6 +4,7 @@
 
 #include "decoder/layout/level_reader.h"
 #include "decoder/reopen.h"
+#include "decoder/told_bounds.h"
 #include "decoder/with_image.h"
 #include "gim/decoder.h"
 
@@ -56,11 +57,19 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     for (size_t k = 0; k < 3; ++k)
         info->origin[k] = header.wide_origin ? (*header.wide_origin)[k] : double{header.origin[k]};
     info->step = header.step;
-    for (size_t k = 0; k < header.level_psnr.size(); ++k)
-        info->level_psnr[header.level_psnr.size() - 1 - k] = 0.5f * header.level_psnr[k];
     info->quantizer = header.quantizer;
     info->index_size = header.index_size;
+    tell_bounds(header, info);
     info->limits = {l.max_samples, l.max_images, l.max_side};
+    return code(Status::kOk);
+}
+
+gim_status gim_read_box(const gim_info* info, const void* bytes, size_t size, uint32_t image, gim_box* box) {
+    if (!box) return code(Status::kBadArgument);
+    Header header;
+    if (Status s = reopen(info, bytes, size, &header); s != Status::kOk) return code(s);
+    if (image >= header.image_count()) return code(Status::kBadArgument);
+    *box = image_box(header, image);
     return code(Status::kOk);
 }
 
@@ -68,7 +77,12 @@ gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t s
                                gim_level_info* level_info) {
     if (!level_info) return code(Status::kBadArgument);
     return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
-        return reader.level_info(request, level_info);
+        const Status status = reader.level_info(request, level_info);
+        if (status != Status::kOk) return status;
+        level_info->rms_error = info->level_rms_error[level];
+        level_info->max_error = info->level_max_error[level];
+        level_info->box = image_box(request.header, image);
+        return status;
     });
 }
 

@@ -6,6 +6,7 @@
 #include "encoder/code/assemble_file.h"
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/level_report.h"
+#include "encoder/code/measure_boxes.h"
 #include "encoder/planes/make_planes.h"
 #include "encoder/rate_search.h"
 
@@ -56,7 +57,7 @@ struct FileRun::Impl {
         }
         parameters.bits = options_.bits;
         parameters.base_side = options_.node_side;
-        parameters.level_psnr = true;
+        parameters.bounds = true;
         parameters.wide_origin = original_.frame.is_moved;
         return parameters;
     }
@@ -73,7 +74,9 @@ struct FileRun::Impl {
         GIM_TRY(levels, measure_levels(encoded.bytes, original_.surface, comparison, options_.threads));
         encoded.report.levels = std::move(levels);
         GIM_TRY(info, read_own_info(encoded.bytes));
-        encoded.bytes = set_level_psnr(encoded.bytes, psnr_of_levels(encoded.report.levels, info.level_count));
+        encoded.bytes = set_level_errors(encoded.bytes, errors_of_levels(encoded.report.levels, info.level_count));
+        GIM_TRY(boxes, measure_boxes(encoded.bytes));
+        encoded.bytes = set_boxes(encoded.bytes, boxes);
         GIM_TRY(planes, plane_maker_.measure(encoded.bytes));
         encoded.report.planes = std::move(planes);
         return {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/bounds.h"
 #include "format/checksum.h"
 #include "format/quad_complex.h"
 #include "format/seam.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
-constexpr uint8_t kLossyFlag = 0x04, kPsnrFlag = 0x08, kWideOriginFlag = 0x10, kReservedFlags = 0xE0,
+constexpr uint8_t kLossyFlag = 0x04, kBoundsFlag = 0x08, kWideOriginFlag = 0x10, kReservedFlags = 0xE0,
                   kLayoutMask = 0x03;
 constexpr uint8_t kTileExponentMask = 0x0F, kSharpWaveletFlag = 0x10, kSharpEdgesFlag = 0x20, kReservedTileFlags = 0xC0;
 
@@ -146,6 +147,19 @@ Status parse_origin(ByteReader* reader, bool is_wide, Header* header) {
     return Status::kOk;
 }
 
+bool parse_bounds(ByteReader* reader, std::span<const uint8_t> file, Header* header) {
+    const size_t errors = kErrorsOfLevel * header->level_count, boxes = kBoxSize * header->image_count();
+    const size_t at = reader->position();
+    if (!reader->skip(errors + boxes)) return false;
+    header->level_errors = file.subspan(at, errors);
+    header->boxes = file.subspan(at + errors, boxes);
+    BoxNumbers numbers;
+    for (size_t image = 0; image < header->image_count(); ++image) {
+        if (!read_box(header->boxes.subspan(image * kBoxSize, kBoxSize), &numbers)) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits, Header* header) {
@@ -196,11 +210,7 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
          !reader.read_u8(&header->tangential) || !reader.read_u8(&header->cell_area) ||
          (header->tangential == 0 && header->cell_area != 0)))
         return Status::kMalformed;
-    if (kind & kPsnrFlag) {
-        const size_t psnr_at = reader.position();
-        if (!reader.skip(levels)) return Status::kMalformed;
-        header->level_psnr = file.subspan(psnr_at, levels);
-    }
+    if ((kind & kBoundsFlag) && !parse_bounds(&reader, file, header)) return Status::kMalformed;
     header->index = file.subspan(reader.position(), body - reader.position());
     return check_index(header);
 }
@@ -221,9 +231,9 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(
-        static_cast<uint8_t>(static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
-                             (header.level_psnr.empty() ? 0 : kPsnrFlag) | (header.wide_origin ? kWideOriginFlag : 0)));
+    rest.push_back(static_cast<uint8_t>(
+        static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+        (header.level_errors.empty() ? 0 : kBoundsFlag) | (header.wide_origin ? kWideOriginFlag : 0)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
     if (header.layout == FileLayout::kCharts) {
@@ -249,7 +259,8 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
         rest.push_back(header.tangential);
         rest.push_back(header.cell_area);
     }
-    for (const uint8_t psnr : header.level_psnr) rest.push_back(psnr);
+    rest.insert(rest.end(), header.level_errors.begin(), header.level_errors.end());
+    rest.insert(rest.end(), header.boxes.begin(), header.boxes.end());
     for (const Chunk& chunk : chunks) {
         append_leb128(
             uint64_t{static_cast<uint32_t>(chunk.type)} << 2 | (chunk.zstd ? 2u : 0u) | (chunk.optional ? 1u : 0u),

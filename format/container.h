@@ -45,6 +45,7 @@ inline constexpr uint32_t kMinBits = 8, kMaxBits = 20;
 inline constexpr uint32_t kMaxImages = 65536;
 inline constexpr uint32_t kMaxAtlasSide = 65536;
 inline constexpr uint32_t kMaxLevels = 14;
+inline constexpr size_t kErrorsOfLevel = 2, kBoxSize = 7;  // bytes of a header (format/bounds.h)
 inline constexpr uint64_t kMaxIndexSize = uint64_t{1} << 24;
 inline constexpr float kMaxOrigin = 0x1p100f;                              // greatest absolute value, of both kinds
 inline constexpr float kMinStep = 0x1p-100f, kMaxStep = 0x1p76f;           // object units per unit
@@ -100,7 +101,9 @@ struct Header : Units {
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
     TileShape tiles;                          // kTiles
-    std::span<const uint8_t> level_psnr;      // empty, or half decibels per level, coarsest first; 0: unknown
+    // Both are empty, or both are there (format/bounds.h).
+    std::span<const uint8_t> level_errors;  // codes of the RMS and the maximum error of each level, coarsest first
+    std::span<const uint8_t> boxes;         // kBoxSize bytes per image
 
     // Derived from the file.
     std::span<const uint8_t> index;

@@ -1,5 +1,6 @@
 // gim info: describes a .gim file and checks its bytes.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -158,6 +159,28 @@ void add_clusters(const Bytes& file, Description& d) {
     }
 }
 
+// Levels whose errors the file tells; they are the finest ones.
+uint32_t told_levels(const gim_info& info) {
+    uint32_t count = 0;
+    while (count < info.level_count && info.level_rms_error[count] > 0) ++count;
+    return count;
+}
+
+// PSNR against the diagonal of the box. The input's own diagonal is not in the file; the two differ by about 1 %.
+double psnr_of(const gim_info& info, uint32_t level) {
+    double sum = 0;
+    for (size_t k = 0; k < 3; ++k) sum += std::pow(double{info.box.high[k]} - double{info.box.low[k]}, 2);
+    return 20 * std::log10(std::sqrt(sum) / double{info.level_rms_error[level]});
+}
+
+ordered_json to_json(const gim_box& box) { return {{"low", box.low}, {"high", box.high}}; }
+
+// The memory that a program needs to decode a level into positions, normals and triangles: output and scratch.
+uint64_t decode_bytes(const DecoderLevel& level) {
+    return level.scratch_size + uint64_t{level.vertex_count} * 6 * sizeof(float) +
+           uint64_t{level.triangle_count} * 3 * sizeof(uint32_t);
+}
+
 double bits_per_sample(const gim_info& info) {
     return info.sample_count == 0 ? 0
                                   : 8.0 * static_cast<double>(info.file_size) / static_cast<double>(info.sample_count);
@@ -174,7 +197,8 @@ void print_json(const std::string& path, const Description& d) {
                               {"vertices", level.vertex_count},
                               {"triangles", level.triangle_count},
                               {"prefix_bytes", level.prefix_size},
-                              {"scratch_bytes", level.scratch_size}});
+                              {"scratch_bytes", level.scratch_size},
+                              {"decode_bytes", decode_bytes(level)}});
         }
         ordered_json planes = ordered_json::array();
         for (const DecoderPlane& plane : image.planes) {
@@ -186,6 +210,7 @@ void print_json(const std::string& path, const Description& d) {
         }
         ordered_json entry = {
             {"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}};
+        if (d.info.has_boxes != 0 && !image.levels.empty()) entry["box"] = to_json(image.levels[0].box);
         if (!image.clusters.empty()) entry["clusters"] = to_json(image.clusters);
         images.push_back(entry);
     }
@@ -199,31 +224,51 @@ void print_json(const std::string& path, const Description& d) {
         if (chunk.level >= 0) entry["level"] = chunk.level;
         chunks.push_back(entry);
     }
-    ordered_json psnr = ordered_json::array();
-    for (uint32_t level = 0; level < d.info.level_count && d.info.level_psnr[level] > 0; ++level) {
-        psnr.push_back(d.info.level_psnr[level]);
+    ordered_json rms = ordered_json::array(), largest = ordered_json::array(), psnr = ordered_json::array();
+    for (uint32_t level = 0; level < told_levels(d.info); ++level) {
+        rms.push_back(d.info.level_rms_error[level]);
+        largest.push_back(d.info.level_max_error[level]);
+        if (d.info.has_boxes != 0) psnr.push_back(psnr_of(d.info, level));
     }
-    const ordered_json document = {{"file", path},
-                                   {"version", d.info.version},
-                                   {"layout", layout_name(d.info.layout)},
-                                   {"coding", coding_name(d.info.coding)},
-                                   {"bits", d.info.bits},
-                                   {"step", d.info.step},
-                                   {"quantizer", d.info.quantizer},
-                                   {"origin", {d.info.origin[0], d.info.origin[1], d.info.origin[2]}},
-                                   {"relative", d.info.is_relative != 0},
-                                   {"bytes", d.actual_size},
-                                   {"index_bytes", d.info.index_size},
-                                   {"samples", d.info.sample_count},
-                                   {"bits_per_sample", bits_per_sample(d.info)},
-                                   {"level_count", d.info.level_count},
-                                   {"level_psnr", psnr},
-                                   {"images", images},
-                                   {"chunks", chunks},
-                                   {"text", d.text},
-                                   {"problems", d.problems},
-                                   {"intact", d.problems.empty()}};
+    ordered_json document = {{"file", path},
+                             {"version", d.info.version},
+                             {"layout", layout_name(d.info.layout)},
+                             {"coding", coding_name(d.info.coding)},
+                             {"bits", d.info.bits},
+                             {"step", d.info.step},
+                             {"quantizer", d.info.quantizer},
+                             {"origin", {d.info.origin[0], d.info.origin[1], d.info.origin[2]}},
+                             {"relative", d.info.is_relative != 0},
+                             {"bytes", d.actual_size},
+                             {"index_bytes", d.info.index_size},
+                             {"samples", d.info.sample_count},
+                             {"bits_per_sample", bits_per_sample(d.info)},
+                             {"level_count", d.info.level_count},
+                             {"level_rms_error", rms},
+                             {"level_max_error", largest},
+                             {"level_psnr", psnr},
+                             {"images", images},
+                             {"chunks", chunks},
+                             {"text", d.text},
+                             {"problems", d.problems},
+                             {"intact", d.problems.empty()}};
+    if (d.info.has_boxes != 0) document["box"] = to_json(d.info.box);
     std::fputs(json_text(document).c_str(), stdout);
+}
+
+void print_bounds(const gim_info& info) {
+    if (info.has_boxes != 0) {
+        const auto& [low, high] = info.box;
+        std::printf("  box %.6g, %.6g, %.6g to %.6g, %.6g, %.6g\n", double{low[0]}, double{low[1]}, double{low[2]},
+                    double{high[0]}, double{high[1]}, double{high[2]});
+    }
+    if (told_levels(info) == 0) return;
+    std::printf("  errors in object units, measured by the encoder\n  level          RMS      largest   about\n");
+    for (uint32_t level = 0; level < told_levels(info); ++level) {
+        std::printf("  %5u  %11.5g  %11.5g", level, double{info.level_rms_error[level]},
+                    double{info.level_max_error[level]});
+        std::printf(info.has_boxes != 0 ? "  %5.1f dB\n" : "\n", info.has_boxes != 0 ? psnr_of(info, level) : 0.0);
+    }
 }
 
 void print_text(const std::string& path, const Description& d) {
@@ -236,21 +281,16 @@ void print_text(const std::string& path, const Description& d) {
                 bits_per_sample(info));
     std::printf("  origin %.17g, %.17g, %.17g (%s)\n", info.origin[0], info.origin[1], info.origin[2],
                 info.is_relative != 0 ? "binary64; decoded positions are relative to it" : "binary32");
-    if (info.level_psnr[0] > 0) {
-        std::printf("  PSNR in dB, measured by the encoder:");
-        for (uint32_t level = 0; level < info.level_count && info.level_psnr[level] > 0; ++level) {
-            std::printf("%s level %u %.1f", level > 0 ? "," : "", level, static_cast<double>(info.level_psnr[level]));
-        }
-        std::printf("\n");
-    }
+    print_bounds(info);
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
         std::printf("image %zu: %u %s", i, image.paths, paths_name(info.layout));
         if (image.seam_points > 0) std::printf(", %u surface points on the ring", image.seam_points);
-        std::printf("\n  level         size   vertices  triangles   bytes needed\n");
+        std::printf("\n  level         size   vertices  triangles   bytes needed  memory to decode\n");
         for (const DecoderLevel& level : image.levels) {
-            std::printf("  %5u  %5u x %4u  %9u  %9u  %13llu\n", level.level, level.width, level.height,
-                        level.vertex_count, level.triangle_count, static_cast<unsigned long long>(level.prefix_size));
+            std::printf("  %5u  %5u x %4u  %9u  %9u  %13llu  %16s\n", level.level, level.width, level.height,
+                        level.vertex_count, level.triangle_count, static_cast<unsigned long long>(level.prefix_size),
+                        with_thousands(decode_bytes(level)).c_str());
         }
     }
     for (size_t i = 0; i < d.images.size(); ++i) {

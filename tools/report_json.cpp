@@ -107,6 +107,8 @@ ordered_json to_json(const EncodeReport& report) {
                           {"triangles", level.triangles},
                           {"prefix_bytes", level.prefix_bytes},
                           {"psnr", level.psnr},
+                          {"rms_error", level.rms_error},
+                          {"max_error", level.max_error},
                           {"defects", to_json(level.defects)}});
     }
     ordered_json others = ordered_json::array();

@@ -3,7 +3,6 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "format/checksum.h"
@@ -102,14 +101,31 @@ std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<con
     return join(header, payloads);
 }
 
-std::vector<uint8_t> set_level_psnr(std::span<const uint8_t> file, std::span<const double> psnr) {
+std::vector<uint8_t> set_level_errors(std::span<const uint8_t> file, std::span<const LevelError> errors) {
     std::vector<uint8_t> coded;
-    for (size_t k = psnr.size(); k-- > 0;) {
-        coded.push_back(static_cast<uint8_t>(psnr[k] > 0 ? std::min(std::floor(2 * psnr[k]), 255.0) : 0.0));
-    }
     return with_header(file, [&](Header& header) {
-        if (header.level_psnr.size() != coded.size()) return false;
-        header.level_psnr = coded;
+        for (size_t k = errors.size(); k-- > 0;) {
+            for (const double error : {errors[k].rms, errors[k].max})
+                coded.push_back(error < 0 ? uint8_t{0} : error_code_of(error, header));
+        }
+        if (header.level_errors.size() != coded.size()) return false;
+        header.level_errors = coded;
+        return true;
+    });
+}
+
+std::vector<uint8_t> set_boxes(std::span<const uint8_t> file, std::span<const Box> boxes) {
+    std::vector<uint8_t> coded;
+    return with_header(file, [&](Header& header) {
+        if (header.boxes.size() != kBoxSize * boxes.size()) return false;
+        for (const Box& box : boxes) {
+            const BoxNumbers numbers = box_around(box, header);
+            append_box(numbers, &coded);
+            if (numbers.is_told()) continue;
+            coded.assign(header.boxes.size(), 0);
+            break;
+        }
+        header.boxes = coded;
         return true;
     });
 }

@@ -14,12 +14,16 @@ FileWriter::FileWriter(std::unique_ptr<LevelCoder> coder, const CodingParameters
       planes_(parameters.planes),
       text_(parameters.text) {
     seams_ = coder_->seam_payload();
-    if (parameters.level_psnr) level_psnr_.assign(coder_->header().level_count, 0);
+    if (!parameters.bounds) return;
+    const Header header = coder_->header();
+    level_errors_.assign(kErrorsOfLevel * header.level_count, 0);
+    boxes_.assign(kBoxSize * header.image_count(), 0);
 }
 
 Header FileWriter::header(double quantizer) const {
     Header header = coder_->header();
-    header.level_psnr = level_psnr_;
+    header.level_errors = level_errors_;
+    header.boxes = boxes_;
     if (header.coding == Coding::kLossy) header.quantizer = quantizer_in_range(quantizer);
     return header;
 }

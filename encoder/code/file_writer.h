@@ -30,7 +30,7 @@ struct CodingParameters {
     std::string text;                // UTF-8; goes into a META chunk unless empty
     std::optional<Units> units;      // lossy: units of a fit, used instead of those of the images
     RepairBands repair;              // lossy: mends what the quantizer spoils; empty: nothing does
-    bool level_psnr = false;         // leaves room in the header for set_level_psnr
+    bool bounds = false;             // leaves room in the header for set_level_errors and set_boxes
     bool wide_origin = false;        // gives the file a binary64 origin, for move_origin
 };
 
@@ -58,7 +58,7 @@ class FileWriter {
 
   private:
     std::unique_ptr<LevelCoder> coder_;
-    std::vector<uint8_t> seams_, level_psnr_;
+    std::vector<uint8_t> seams_, level_errors_, boxes_;
     bool has_wide_origin_;
     std::vector<CodedPlane> planes_;
     std::string text_;

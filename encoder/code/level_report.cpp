@@ -35,6 +35,13 @@ Result<LevelReport> describe_level(const Decoder& decoder, uint32_t level) {
     return report;
 }
 
+void tell_error(const Comparison& comparison, LevelReport* report) {
+    report->psnr = comparison.psnr;
+    report->rms_error = comparison.rms;
+    report->max_error = comparison.hausdorff;
+    report->defects = *comparison.defects;
+}
+
 uint64_t sideband_size(std::span<const uint8_t> bytes) {
     Decoder decoder;
     if (decoder.open(bytes) != GIM_OK) return 0;
@@ -61,23 +68,21 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
         GIM_TRY(report, describe_level(decoder, level));
         if (report.width == 0) break;
         if (level == 0) {
-            report.psnr = full.psnr;
-            report.defects = *full.defects;
+            tell_error(full, &report);
         } else {
             GIM_TRY(surface, decode_surface(bytes, level));
             GIM_TRY(comparison, reference.compare(surface, options));
-            report.psnr = comparison.psnr;
-            report.defects = *comparison.defects;
+            tell_error(comparison, &report);
         }
         levels.push_back(report);
     }
     return levels;
 }
 
-std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count) {
-    std::vector<double> psnr(level_count, 0.0);
-    for (const LevelReport& level : levels) psnr[level.level] = level.psnr;
-    return psnr;
+std::vector<LevelError> errors_of_levels(std::span<const LevelReport> levels, uint32_t level_count) {
+    std::vector<LevelError> errors(level_count);
+    for (const LevelReport& level : levels) errors[level.level] = {level.rms_error, level.max_error};
+    return errors;
 }
 
 void describe_file(std::span<const uint8_t> bytes, EncodeReport& report) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "encoder/code/assemble_file.h"
 #include "encoder/surface/compare_meshes.h"
 #include "gim/encoder.h"
 
@@ -17,8 +18,8 @@ namespace gim {
 Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, const ReferenceSurface& reference,
                                                 const Comparison& full, uint32_t threads);
 
-// Returns the PSNR for each level of the file; 0 if no image has closed seams at that level.
-std::vector<double> psnr_of_levels(std::span<const LevelReport> levels, uint32_t level_count);
+// Returns the error of each level of the file; not known where no image has closed seams at that level.
+std::vector<LevelError> errors_of_levels(std::span<const LevelReport> levels, uint32_t level_count);
 
 // Sets the sizes of a complete file in the report, which must have the numbers of samples and input vertices.
 void describe_file(std::span<const uint8_t> bytes, EncodeReport& report);

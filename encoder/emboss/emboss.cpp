@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "encoder/code/assemble_file.h"
+#include "encoder/code/measure_boxes.h"
 #include "encoder/emboss/code_displacements.h"
 #include "encoder/emboss/exponential_map.h"
 #include "encoder/emboss/finest_image.h"
@@ -260,6 +261,8 @@ Result<Embossed> emboss(std::span<const uint8_t> file, const HeightPicture& pict
     GIM_TRY(coded, code_displacements(file, planes, quantizer));
     embossed.plane_bytes = coded.payload.size();
     embossed.bytes = replace_planes(file, std::span(&coded, 1));
+    GIM_TRY(boxes, measure_boxes(embossed.bytes));
+    embossed.bytes = set_boxes(embossed.bytes, boxes);
     return embossed;
 }
 

@@ -37,6 +37,7 @@ TEST(Conformance, ValidFilesDecodeToTheExpectedBits) {
         EXPECT_EQ(to_bytes(decoded.vertices), read_bytes(fs::path(path).replace_extension(".vtx")));
         EXPECT_EQ(to_bytes(decoded.planes), read_bytes(fs::path(path).replace_extension(".pln")));
         EXPECT_EQ(to_bytes(decoded.details), read_bytes(fs::path(path).replace_extension(".dsp")));
+        EXPECT_EQ(to_bytes(decoded.bounds), read_bytes(fs::path(path).replace_extension(".bnd")));
     }
 }
 
@@ -75,6 +76,7 @@ TEST(Conformance, NoDamagedByteChangesTheSurfaceUnnoticed) {
                 ASSERT_EQ(damaged.triangles, whole.triangles) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.planes), to_bytes(whole.planes)) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.details), to_bytes(whole.details)) << "byte " << i;
+                ASSERT_EQ(to_bytes(damaged.bounds), to_bytes(whole.bounds)) << "byte " << i;
             }
             file[i] = kept;
         }

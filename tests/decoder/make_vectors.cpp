@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "encoder/charts/write_charts.h"
+#include "encoder/code/assemble_file.h"
 #include "encoder/code/code_bands.h"
 #include "encoder/code/file_units.h"
+#include "encoder/code/measure_boxes.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/tiles/tile_plane.h"
@@ -245,6 +247,15 @@ Bytes far_away(const Bytes& file) {
     return with_parts(file, [](Parts& p) { p.header.wide_origin = {500000.1, -4000000.3, 0x1p100}; });
 }
 
+Bytes with_boxes(const Bytes& file) {
+    auto boxes = measure_boxes(file);
+    if (!boxes.ok()) {
+        std::fprintf(stderr, "boxes: %s\n", boxes.error().message.c_str());
+        std::abort();
+    }
+    return set_boxes(file, boxes.value());
+}
+
 // ---- output ---------------------------------------------------------------------------------------------------------
 
 void write_bytes(const fs::path& path, const Bytes& bytes) {
@@ -265,6 +276,7 @@ class Writer {
         write_bytes(folder_ / "valid" / (name + ".vtx"), to_bytes(decoded.vertices));
         if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
         if (!decoded.details.empty()) write_bytes(folder_ / "valid" / (name + ".dsp"), to_bytes(decoded.details));
+        if (!decoded.bounds.empty()) write_bytes(folder_ / "valid" / (name + ".bnd"), to_bytes(decoded.bounds));
     }
     void invalid(const std::string& name, const Bytes& file) {
         const gim_status status = decode_all(file).status;
@@ -331,9 +343,14 @@ void write_valid(Writer& out) {
     out.valid("frames-of-a-line", encode({line}, lossy(12, 9, 4)));
 
     CodingParameters measured = lossy(12, 5, 6);
-    measured.level_psnr = true;
-    out.valid("level-psnr",
-              set_level_psnr(encode({hill(17, folded_sides(), 2, 15)}, measured), std::vector<double>{73.9, 60.25, 0}));
+    measured.bounds = true;
+    const std::vector<LevelError> errors = {{0.25, 3.75}, {0, 0x1p40}, {}};
+    const Bytes bounded = set_level_errors(encode({hill(17, folded_sides(), 2, 15)}, measured), errors);
+    out.valid("bounds", with_boxes(bounded));
+    out.valid("bounds-without-boxes", bounded);
+    out.valid("bounds-two-images",
+              with_boxes(encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, measured)));
+    out.valid("bounds-wide-origin", with_boxes(far_away(bounded)));
     // The same samples as in the files without "wide-origin", far from 0.
     out.valid("wide-origin-lossless", far_away(encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5))));
     out.valid("wide-origin-two-images-lossy",
@@ -512,7 +529,7 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     out.invalid("unsupported-version.version-2", changed(plain, 7, 2));
     out.invalid("unsupported-version.layout-3", with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{3}; }));
     out.invalid("unsupported-version.reserved-flag",
-                with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x20}; }));
+                with_parts(plain, [](Parts& p) { p.header.layout = FileLayout{0x40}; }));
     out.invalid("unsupported-version.critical-chunk",
                 with_parts(plain, [](Parts& p) { insert_chunk(&p, 0, 77, false, {1}); }));
     out.invalid("checksum.index", changed(plain, 12, static_cast<uint8_t>(plain[12] ^ 1)));
@@ -549,6 +566,14 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     header("malformed.quantizer-zero", [](Parts& p) { p.header.quantizer = 0; });
     header("malformed.quantizer-nan", [](Parts& p) { p.header.quantizer = std::numeric_limits<float>::quiet_NaN(); });
     header("malformed.cell-area-without-frames", [](Parts& p) { p.header.tangential = 0; });
+    const Bytes errors(kErrorsOfLevel * take_apart(fine).header.level_count, 1);
+    const auto boxed = [&](const char* name, const Bytes& box) {
+        Bytes boxes(2 * kBoxSize, 0);
+        std::copy(box.begin(), box.end(), boxes.begin() + kBoxSize);
+        header(name, [&](Parts& p) { p.header.level_errors = errors, p.header.boxes = boxes; });
+    };
+    boxed("malformed.box-low-above-high", {0x00, 0x00, 0x00, 0x20, 0x00, 0x00, 0x00});
+    boxed("malformed.box-padding", {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x01});
     header("malformed.no-seams", [](Parts& p) { remove_chunk(&p, 0); });
     header("malformed.seams-twice", [](Parts& p) { insert_chunk(&p, 1, 0, false, p.payloads[0]); });
     header("malformed.seams-optional", [](Parts& p) { p.chunks[0].optional = true; });

@@ -23,6 +23,7 @@ struct Decoded {
     std::vector<float> vertices;      // normals, then texture coordinates, of gim_decode_mesh
     std::vector<float> planes;        // of gim_decode_plane
     std::vector<float> details;       // of gim_open_detailed_domain
+    std::vector<float> bounds;        // errors of levels (RMS, maximum), then boxes of images (low, high), if told
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
 
@@ -115,10 +116,28 @@ inline gim_status decode_details(const gim_info& info, const std::vector<uint8_t
     }
 }
 
+// What the index tells of errors and boxes. Empty if it tells nothing.
+inline gim_status read_bounds(const gim_info& info, const std::vector<uint8_t>& file, Decoded* out) {
+    if (info.level_max_error[0] == 0 && info.has_boxes == 0) return GIM_OK;
+    for (uint32_t level = 0; level < info.level_count; ++level) {
+        out->bounds.push_back(info.level_rms_error[level]);
+        out->bounds.push_back(info.level_max_error[level]);
+    }
+    gim_status status = GIM_OK;
+    for (uint32_t image = 0; status == GIM_OK && image < info.image_count; ++image) {
+        gim_box box{};
+        status = gim_read_box(&info, file.data(), file.size(), image, &box);
+        out->bounds.insert(out->bounds.end(), box.low, box.low + 3);
+        out->bounds.insert(out->bounds.end(), box.high, box.high + 3);
+    }
+    return status;
+}
+
 inline Decoded decode_all(const std::vector<uint8_t>& file) {
     Decoded out;
     gim_info info;
     out.status = gim_read_info(file.data(), file.size(), nullptr, &info);
+    if (out.status == GIM_OK) out.status = read_bounds(info, file, &out);
     for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image) {
         uint32_t coarsest = 0;
         for (uint32_t level = 0; out.status == GIM_OK && level <= coarsest; ++level)

@@ -1,7 +1,9 @@
 // The whole way: mesh -> .gim -> mesh.
 #include <gtest/gtest.h>
 
+#include <cfloat>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "corpus/corpus.h"
@@ -119,8 +121,13 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
         const auto comparison = compare(mesh, as_input(decode_surface(bytes, level).value()), options);
         ASSERT_TRUE(comparison.ok());
         EXPECT_NEAR(levels[level].psnr, comparison.value().psnr, 0.1);
-        EXPECT_LE(info.level_psnr[level], levels[level].psnr);
-        EXPECT_GT(info.level_psnr[level], levels[level].psnr - 0.5);
+        const double rms = levels[level].rms_error, largest = levels[level].max_error;
+        EXPECT_GE(largest, rms);
+        EXPECT_GE(info.level_rms_error[level], rms);
+        EXPECT_LE(info.level_rms_error[level], 1.08 * rms);
+        EXPECT_GE(info.level_max_error[level], largest);
+        EXPECT_LE(info.level_max_error[level], 1.08 * largest);
+        EXPECT_NEAR(20 * std::log10(comparison.value().diagonal / rms), levels[level].psnr, 1e-6);
         EXPECT_EQ(levels[level].width, (64u >> level) + 1);
         gim_level_info shape;
         ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), 0, level, &shape), GIM_OK);
@@ -129,7 +136,75 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
         EXPECT_EQ(levels[level].defects.folded_faces, comparison.value().defects->folded_faces);
         EXPECT_NEAR(levels[level].defects.normals_p99, comparison.value().defects->normals_p99, 1);
     }
-    EXPECT_EQ(info.level_psnr[3], 0.0f);
+    EXPECT_EQ(info.level_rms_error[3], 0.0f);
+}
+
+constexpr gim_box kEmptyBox = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+
+void include(const float* low, const float* high, gim_box* box) {
+    for (size_t k = 0; k < 3; ++k) {
+        box->low[k] = std::min(box->low[k], low[k]);
+        box->high[k] = std::max(box->high[k], high[k]);
+    }
+}
+
+// The least box of decoded positions of all levels of an image.
+gim_box least_box(const std::vector<uint8_t>& bytes, uint32_t image) {
+    gim_box least = kEmptyBox;
+    Decoder decoder;
+    EXPECT_EQ(decoder.open(bytes), GIM_OK);
+    DecoderLevel level;
+    for (uint32_t l = 0; decoder.read_level(image, l, &level) == GIM_OK; ++l) {
+        std::vector<float> positions(level.vertex_count * size_t{3});
+        EXPECT_EQ(decoder.mesh(level, {positions, {}, {}, {}}), GIM_OK);
+        for (size_t i = 0; i < positions.size(); i += 3) include(&positions[i], &positions[i], &least);
+    }
+    return least;
+}
+
+void expect_tight_boxes(const std::vector<uint8_t>& bytes) {
+    gim_info info;
+    ASSERT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
+    const uint32_t index = info.index_size;  // is enough
+    ASSERT_EQ(gim_read_info(bytes.data(), index, nullptr, &info), GIM_OK);
+    ASSERT_EQ(info.has_boxes, 1u);
+    const float cell = 1.001f * info.step * static_cast<float>(1u << info.bits) / 256;
+    gim_box all = kEmptyBox;
+    for (uint32_t image = 0; image < info.image_count; ++image) {
+        gim_box box;
+        ASSERT_EQ(gim_read_box(&info, bytes.data(), index, image, &box), GIM_OK);
+        const gim_box least = least_box(bytes, image);
+        for (size_t k = 0; k < 3; ++k) {
+            EXPECT_LE(box.low[k], least.low[k]);
+            EXPECT_GT(box.low[k], least.low[k] - cell);
+            EXPECT_GE(box.high[k], least.high[k]);
+            EXPECT_LT(box.high[k], least.high[k] + cell);
+        }
+        include(box.low, box.high, &all);
+        gim_level_info level;
+        ASSERT_EQ(gim_read_level_info(&info, bytes.data(), bytes.size(), image, 0, &level), GIM_OK);
+        EXPECT_EQ(std::memcmp(&level.box, &box, sizeof box), 0);
+        EXPECT_EQ(level.max_error, info.level_max_error[0]);
+        EXPECT_EQ(level.rms_error, info.level_rms_error[0]);
+    }
+    EXPECT_EQ(std::memcmp(&all, &info.box, sizeof all), 0);
+    EXPECT_EQ(gim_read_box(&info, bytes.data(), index, info.image_count, &all), GIM_BAD_ARGUMENT);
+}
+
+TEST(Encode, BoxesHoldEveryLevelOfTheirImageAndLittleMore) {
+    for (const double shift : {0.0, 3e6}) {
+        TriangleMesh mesh = corpus::corpus().named("four-pieces").mesh();
+        for (auto& p : mesh.positions) p[0] += shift;
+        for (const Layout layout : {Layout::kGim, Layout::kMcgim, Layout::kTiles}) {
+            SCOPED_TRACE(static_cast<int>(layout));
+            EncodeOptions options = small_options();
+            options.layout = layout;
+            options.samples = 4000;
+            const auto encoded = encode(mesh, options);
+            ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+            expect_tight_boxes(encoded.value().bytes);
+        }
+    }
 }
 
 TEST(Encode, ObserverSeesStatesWhoseMapsFitTheirMeshes) {

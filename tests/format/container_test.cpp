@@ -209,16 +209,19 @@ TEST(Container, IndexSizeCountsItselfWhenItTakesTwoBytes) {
     }
 }
 
-TEST(Container, PsnrOfLevelsComesBackCoarsestFirst) {
+TEST(Container, ErrorsOfLevelsAndBoxesOfImagesComeBack) {
     Header h = small_header(), back;
-    const std::vector<uint8_t> psnr = {80, 147};
-    h.level_psnr = psnr;
+    const std::vector<uint8_t> errors = {200, 210, 180, 195};
+    const std::vector<uint8_t> box = {0x40, 0x20, 0x10, 0x0C, 0x06, 0x03, 0xFC};
+    h.level_errors = errors;
+    h.boxes = box;
     const auto bytes = serialize_header(h, kChunks);
     ASSERT_EQ(parse(bytes, &back), Status::kOk);
-    EXPECT_EQ(std::vector<uint8_t>(back.level_psnr.begin(), back.level_psnr.end()), psnr);
+    EXPECT_EQ(std::vector<uint8_t>(back.level_errors.begin(), back.level_errors.end()), errors);
+    EXPECT_EQ(std::vector<uint8_t>(back.boxes.begin(), back.boxes.end()), box);
     EXPECT_EQ(back.chunk_count, 3u);
-    h.level_psnr = {};
-    EXPECT_EQ(serialize_header(h, kChunks).size() + 2, bytes.size());
+    h.level_errors = h.boxes = {};
+    EXPECT_EQ(serialize_header(h, kChunks).size() + errors.size() + box.size(), bytes.size());
 }
 
 TEST(Container, EveryTruncationAsksForMore) {

@@ -70,6 +70,11 @@ typedef struct gim_limits {
     uint32_t max_side;    /* samples along a row or column; default 16385 */
 } gim_limits;
 
+/* A box along the axes, in the coordinates of decoded positions (relative to gim_info.origin if is_relative). */
+typedef struct gim_box {
+    float low[3], high[3];
+} gim_box;
+
 /* Header and index of a file. It holds plain values and no pointer into the bytes. */
 typedef struct gim_info {
     uint32_t version;
@@ -89,13 +94,40 @@ typedef struct gim_info {
     float quantizer;     /* lossy: step across the surface, in quantization steps, at unit norm and mean density.
                               lossless: 0 */
     uint32_t index_size; /* bytes of header and index; a prefix of this length suffices for gim_read_info */
-    float level_psnr[GIM_MAX_LEVELS]; /* dB; level 0 first. The encoder measured each level against its input and
-                                         rounded down to half decibels. 0: the file does not say */
-    gim_limits limits;                /* later calls obey them */
+    /* Level 0 first: distances between the surface of a level and the encoder's input, the larger of both ways, in object
+     * units, as the encoder measured them, rounded up by 7 % at most. 0: the file does not say */
+    float level_rms_error[GIM_MAX_LEVELS];
+    float level_max_error[GIM_MAX_LEVELS];
+    uint32_t has_boxes; /* 1: the file tells the boxes of all its images. 0: boxes are without end */
+    gim_box box;        /* holds the boxes of all images (gim_read_box) */
+    gim_limits limits;  /* later calls obey them */
 } gim_info;
 
 /* Reads header and index and verifies their checksum. Cost O(index). */
 GIM_API gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limits, gim_info* info);
+
+/* Tells a box that holds an image at each of its levels, with its displacements. It reaches less than 1/256 of the
+ * surface's largest extent beyond them on each side. -FLT_MAX .. FLT_MAX, which nothing culls, if the file does not tell
+ * one. Needs header and index only. Cost O(index). */
+GIM_API gim_status gim_read_box(const gim_info* info, const void* bytes, size_t size, uint32_t image, gim_box* box);
+
+/* How a camera sees a surface. */
+typedef struct gim_view {
+    float distance;        /* from the eye to the nearest point of the surface, or of its box; object units */
+    float vertical_fov;    /* radians; that of the viewport's height */
+    float viewport_height; /* pixels */
+    float pixel_error;     /* how large level_max_error may be on the screen, pixels */
+} gim_view;
+
+enum { GIM_NO_LEVEL = 0x7FFFFFFF };
+
+/* Returns the level to show: the coarsest one whose maximum error is at most pixel_error on the screen; 0 if there is
+ * none, if the eye is inside (distance <= 0), or if a value is no number.
+ * shown  the level shown before, GIM_NO_LEVEL if there is none. A coarser one replaces it only if its error is at most
+ *        3/4 of pixel_error, so a surface near the limit does not change back and forth. A finer one comes at once
+ * The level is the file's: take that of an image, and not beyond gim_level_info.coarsest_level. Levels whose error the
+ * file does not tell are not chosen, except level 0. Cost O(levels). */
+GIM_API uint32_t gim_choose_level(const gim_info* info, const gim_view* view, uint32_t shown);
 
 /* One level of one image. */
 typedef struct gim_level_info {
@@ -106,6 +138,9 @@ typedef struct gim_level_info {
     uint32_t triangle_count; /* of mesh and grid alike */
     uint64_t prefix_size;    /* bytes of the file, from its start, that this level needs */
     uint64_t scratch_size;   /* bytes of scratch that the decode calls need on this level */
+    float rms_error;         /* gim_info.level_rms_error of this level */
+    float max_error;         /* gim_info.level_max_error of this level */
+    gim_box box;             /* of the image, as gim_read_box tells it */
 } gim_level_info;
 
 /* level: 0 = full resolution. Returns GIM_NO_SUCH_LEVEL beyond coarsest_level. Reads the chunk of seams (SEAM), so

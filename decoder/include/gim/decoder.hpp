@@ -96,6 +96,10 @@ class Decoder {
     // The header and index of the file that was opened last; zeros if that failed.
     const gim_info& info() const noexcept { return info_; }
 
+    gim_status read_box(std::uint32_t image, gim_box* box) const noexcept {
+        return gim_read_box(&info_, bytes_.data(), bytes_.size(), image, box);
+    }
+
     gim_status read_level(std::uint32_t image, std::uint32_t level, DecoderLevel* out) const noexcept {
         const gim_status status = gim_read_level_info(&info_, bytes_.data(), bytes_.size(), image, level, out);
         if (status != GIM_OK) return status;

@@ -16,7 +16,7 @@ namespace gim {
 
 // Every change to the bytes of any file raises this number. Rows of corpus/results.csv from an older coder are then
 // measured again.
-inline constexpr uint32_t kCoderVersion = 3;
+inline constexpr uint32_t kCoderVersion = 4;
 
 // The stage that reports progress or failed. `stage_name` returns the word that messages use.
 enum class Stage { kInput, kClean, kCut, kBoundaryMap, kParametrize, kSample, kFit, kPlanes, kCode, kWrite, kCompare };
@@ -265,6 +265,7 @@ struct LevelReport {
     uint64_t vertices = 0, triangles = 0;  // of the decoded surface
     uint64_t prefix_bytes = 0;             // bytes from the start of the file that this level needs
     double psnr = 0;                       // dB, decoded surface against the input mesh
+    double rms_error = 0, max_error = 0;   // object units, likewise; the larger of both ways
     Defects defects = {};                  // likewise; coarser levels are measured with fewer samples
 };
 

@@ -160,12 +160,17 @@ TEST(WriteCharts, WhatTheFormatCannotTakeIsRefusedWithWords) {
 TEST(WriteCharts, TextAndMeasuredLevelsAreCarried) {
     CodingParameters parameters = lossy(4);
     parameters.text = "charts";
-    parameters.level_psnr = true;
-    const Bytes bytes = set_level_psnr(written(open_sheet(2), parameters), std::vector<double>{61.3, 40});
+    parameters.bounds = true;
+    const std::vector<LevelError> errors = {{1.5, 7}, {3, 80}};
+    const Bytes bytes = set_level_errors(written(open_sheet(2), parameters), errors);
     gim_info info;
     ASSERT_EQ(gim_read_info(bytes.data(), bytes.size(), nullptr, &info), GIM_OK);
-    EXPECT_EQ(info.level_psnr[0], 61.0f);
-    EXPECT_EQ(info.level_psnr[1], 40.0f);
+    for (size_t level = 0; level < 2; ++level) {
+        EXPECT_GE(info.level_rms_error[level], errors[level].rms);
+        EXPECT_LE(info.level_rms_error[level], 1.08 * errors[level].rms);
+        EXPECT_GE(info.level_max_error[level], errors[level].max);
+        EXPECT_LE(info.level_max_error[level], 1.08 * errors[level].max);
+    }
     uint64_t size = 0;
     EXPECT_EQ(gim_read_text(&info, bytes.data(), bytes.size(), nullptr, 0, &size, nullptr, 0), GIM_OK);
     EXPECT_EQ(size, 6u);
