@@ -30,11 +30,15 @@ copy_tree() {
     cp -a "$1/tools/debian" "$1/debian"
 }
 
-# build_in FOLDER NAME: the packages, in FOLDER; NAME is that of the tree below it.
-build_in() {
+# prepare FOLDER NAME: an empty folder with the tree NAME.
+prepare() {
     mkdir -p "$1"
     rm -f "$1"/*.deb "$1"/*.changes "$1"/*.buildinfo
     copy_tree "$1/$2"
+}
+
+# build_in FOLDER NAME: the packages, in FOLDER.
+build_in() {
     say "Building the packages in $1/$2"
     (
         cd "$1/$2"
@@ -75,6 +79,8 @@ else
     install_packages "${GIM_PACKAGE_PACKAGES[@]}" "${GIM_BUILD_PACKAGES[@]}" python3-numpy
 fi
 check_version
+prepare "$OUT" gim
+[ "$twice" = no ] || prepare "$OUT/again" gim-again # the same files, whatever happens to the tree meanwhile
 build_in "$OUT" gim
 check_with_lintian
 if [ "$twice" = yes ]; then

@@ -70,7 +70,7 @@ class Sources(unittest.TestCase):
 
 class Contents(unittest.TestCase):
     def test_info_and_levels(self):
-        data = valid("level-psnr")
+        data = valid("bounds")
         file = gim.open(data)
         self.assertEqual((file.info.layout, file.info.image_count), ("gim", 1))
         self.assertEqual(file.info.file_size, len(data))
@@ -81,6 +81,33 @@ class Contents(unittest.TestCase):
             self.assertEqual(mesh.faces.shape, (level.triangle_count, 3))
             self.assertIsNone(mesh.normals)
             self.assertLess(mesh.faces.max(), level.vertex_count)
+
+    def test_boxes_hold_the_surface(self):
+        file = gim.open(valid("bounds-two-images"))
+        for image in file.images:
+            for corners in (image.box, file.info.box):
+                for level in image.levels:
+                    vertices = image.mesh(level.level).vertices
+                    self.assertTrue((vertices >= corners.low).all() and (vertices <= corners.high).all())
+        without = gim.open(valid("bounds-without-boxes"))
+        self.assertIsNone(without.info.box)
+        self.assertIsNone(without.images[0].box)
+
+    def test_errors_choose_the_level(self):
+        file = gim.open(valid("bounds"))
+        self.assertEqual([(level.rms_error, level.max_error) for level in file.levels],
+                         list(zip(file.info.rms_errors, file.info.max_errors)))
+        fov, height = 1.0, 1000
+        one_pixel = lambda level: file.levels[level].max_error / (2 * np.tan(fov / 2) / height)  # at this distance
+        for level in range(1, len(file.levels)):
+            self.assertEqual(file.choose_level(one_pixel(level) * 1.01, fov, height), level)
+            self.assertEqual(file.choose_level(one_pixel(level) * 1.01 / 3, fov, height, pixel_error=3), level)
+            # A coarser level has to earn it; a finer one comes at once.
+            self.assertEqual(file.choose_level(one_pixel(level) * 1.01, fov, height, shown=level - 1), level - 1)
+            self.assertEqual(file.choose_level(one_pixel(level) * 1.01, fov, height, shown=level), level)
+            self.assertLess(file.choose_level(one_pixel(level) * 0.99, fov, height, shown=level), level)
+        self.assertEqual(file.choose_level(0, fov, height), 0)
+        self.assertEqual(file.choose_level(float("nan"), fov, height), 0)
 
     def test_a_prefix_holds_its_levels(self):
         data = valid("sphere-33-lossy")

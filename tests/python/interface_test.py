@@ -9,13 +9,13 @@ from support import ROOT, gim
 
 HEADER = re.sub(r"/\*.*?\*/", " ", (ROOT / "decoder/include/gim/decoder.h").read_text(encoding="utf-8"), flags=re.S)
 TYPES = {"uint64_t": ctypes.c_uint64, "uint32_t": ctypes.c_uint32, "int32_t": ctypes.c_int32, "float": ctypes.c_float,
-         "double": ctypes.c_double, "size_t": ctypes.c_size_t, "gim_limits": gim._Limits}
+         "double": ctypes.c_double, "size_t": ctypes.c_size_t, "gim_limits": gim._Limits, "gim_box": gim._Box}
 
 
 def constants():
     named = {}
     for body in re.findall(r"enum\s*\{(.*?)\}", HEADER, re.S):
-        named.update((name, int(value)) for name, value in re.findall(r"(GIM_\w+)\s*=\s*(-?\d+)", body))
+        named.update((name, int(value, 0)) for name, value in re.findall(r"(GIM_\w+)\s*=\s*(-?\w+)", body))
     return named
 
 
@@ -31,7 +31,7 @@ def fields_of(struct):
 
 class Interface(unittest.TestCase):
     def test_structs(self):
-        for name, struct in (("gim_limits", gim._Limits), ("gim_info", gim._Info), ("gim_level_info", gim._LevelInfo),
+        for name, struct in (("gim_limits", gim._Limits), ("gim_box", gim._Box), ("gim_info", gim._Info), ("gim_view", gim._View), ("gim_level_info", gim._LevelInfo),
                              ("gim_plane_info", gim._PlaneInfo)):
             with self.subTest(name):
                 self.assertEqual(struct._fields_, fields_of(name))
@@ -46,7 +46,7 @@ class Interface(unittest.TestCase):
 
     def test_kinds(self):
         named = constants()
-        self.assertEqual(named["GIM_MAX_LEVELS"], gim._MAX_LEVELS)
+        self.assertEqual((named["GIM_MAX_LEVELS"], named["GIM_NO_LEVEL"]), (gim._MAX_LEVELS, gim._NO_LEVEL))
         for prefix, names in (("GIM_LAYOUT_", gim._LAYOUTS), ("GIM_CODING_", gim._CODINGS), ("GIM_PLANE_", gim._PLANES)):
             of_header = {name[len(prefix):].lower(): value for name, value in named.items() if name.startswith(prefix)}
             self.assertEqual(of_header, {name: number for number, name in enumerate(names)})

@@ -34,10 +34,20 @@ def torus(rows, columns):
     return vertices, np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
 
 
+def bounds_of(file):
+    """Errors of levels, then boxes of images, as in the .bnd files; nothing if the file tells neither."""
+    info, most = file.info, float(np.finfo(np.float32).max)
+    if info.max_errors[0] == 0 and info.box is None:
+        return []
+    errors = [pair for level in zip(info.rms_errors, info.max_errors) for pair in level]
+    boxes = [image.box or gim.Box((-most,) * 3, (most,) * 3) for image in file.images]
+    return [np.array(errors + [x for box in boxes for corner in box for x in corner], np.float32)]
+
+
 def decode_all(data):
     """Does what tests/decoder/vectors.h does: all levels of all images, then all planes. Returns the arrays by kind."""
     file = gim.open(data)
-    read = {"f32": [], "tri": [], "vtx": [], "pln": []}
+    read = {"f32": [], "tri": [], "vtx": [], "pln": [], "bnd": bounds_of(file)}
     for image in file.images:
         level, last = 0, 0
         while level <= last:

@@ -29,7 +29,7 @@ from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 
-__all__ = ["open", "decode_batch", "encode", "File", "Image", "Info", "Level", "Plane", "Mesh", "Grid", "Frames",
+__all__ = ["open", "decode_batch", "encode", "File", "Image", "Box", "Info", "Level", "Plane", "Mesh", "Grid", "Frames",
            "Limits", "Error", "STATUS_NAMES"]
 
 # ---- the C interface -------------------------------------------------------------------------------------------------
@@ -39,6 +39,7 @@ _ALIGNMENT = 16
 _LAYOUTS = ("gim", "mcgim", "tiles")
 _CODINGS = ("lossless", "lossy")
 _PLANES = ("normals", "colors", "displacements")
+_NO_LEVEL = 0x7FFFFFFF
 
 NEED_MORE_INPUT, OK, NOT_GIM, UNSUPPORTED_VERSION, MALFORMED, LIMIT_EXCEEDED = -1, 0, 1, 2, 3, 4
 BAD_ARGUMENT, SCRATCH_TOO_SMALL, CHECKSUM, NO_SUCH_LEVEL, NO_SUCH_PLANE = 5, 6, 7, 8, 9
@@ -53,16 +54,26 @@ class _Limits(ctypes.Structure):  # gim_limits
     _fields_ = [("max_samples", _u64), ("max_images", _u32), ("max_side", _u32)]
 
 
+class _Box(ctypes.Structure):  # gim_box
+    _fields_ = [("low", _f32 * 3), ("high", _f32 * 3)]
+
+
 class _Info(ctypes.Structure):  # gim_info
     _fields_ = [("version", _u32), ("layout", _u32), ("coding", _u32), ("bits", _u32), ("image_count", _u32),
                 ("level_count", _u32), ("chunk_count", _u32), ("sample_count", _u64), ("file_size", _u64),
                 ("origin", _f64 * 3), ("is_relative", _u32), ("step", _f32), ("quantizer", _f32),
-                ("index_size", _u32), ("level_psnr", _f32 * _MAX_LEVELS), ("limits", _Limits)]
+                ("index_size", _u32), ("level_rms_error", _f32 * _MAX_LEVELS), ("level_max_error", _f32 * _MAX_LEVELS),
+                ("has_boxes", _u32), ("box", _Box), ("limits", _Limits)]
+
+
+class _View(ctypes.Structure):  # gim_view
+    _fields_ = [("distance", _f32), ("vertical_fov", _f32), ("viewport_height", _f32), ("pixel_error", _f32)]
 
 
 class _LevelInfo(ctypes.Structure):  # gim_level_info
     _fields_ = [("side", _u32), ("width", _u32), ("height", _u32), ("coarsest_level", _u32), ("vertex_count", _u32),
-                ("triangle_count", _u32), ("prefix_size", _u64), ("scratch_size", _u64)]
+                ("triangle_count", _u32), ("prefix_size", _u64), ("scratch_size", _u64), ("rms_error", _f32),
+                ("max_error", _f32), ("box", _Box)]
 
 
 class _PlaneInfo(ctypes.Structure):  # gim_plane_info
@@ -94,6 +105,7 @@ def _load_library():
     for function, types in arguments.items():
         getattr(library, function).argtypes = types
         getattr(library, function).restype = ctypes.c_int32
+    library.gim_choose_level.argtypes, library.gim_choose_level.restype = [pointer, pointer, _u32], _u32
     library.gim_text_scratch_size.argtypes, library.gim_text_scratch_size.restype = [], size
     library.gim_status_text.argtypes, library.gim_status_text.restype = [ctypes.c_int32], ctypes.c_char_p
     return library
@@ -213,6 +225,17 @@ def _output(out, shape, budget, dtype=np.float32):
 
 # ---- what a file holds -----------------------------------------------------------------------------------------------
 
+class Box(NamedTuple):
+    """Corners of a box along the axes, in the coordinates of decoded positions."""
+    low: Tuple[float, float, float]
+    high: Tuple[float, float, float]
+
+
+def _told_box(box):
+    """None if the file does not tell a box: then the decoder gives one without end."""
+    return None if box.high[0] >= np.finfo(np.float32).max else Box(tuple(box.low), tuple(box.high))
+
+
 class Info(NamedTuple):
     """Header and index of a file. Lengths are in the units of the mesh that was encoded."""
     version: int
@@ -228,7 +251,9 @@ class Info(NamedTuple):
     step: float        # length of a quantization step
     quantizer: float
     index_size: int    # a prefix of so many bytes suffices for gim.open
-    level_psnr: Tuple[float, ...]  # dB, of each level against the encoder's input; 0: the file does not say
+    rms_errors: Tuple[float, ...]  # of each level against the encoder's input, in object units; 0: the file does not say
+    max_errors: Tuple[float, ...]  # likewise, the largest distance
+    box: Optional[Box]             # holds all images at all levels; None: the file does not say
 
 
 class Level(NamedTuple):
@@ -240,6 +265,8 @@ class Level(NamedTuple):
     triangle_count: int
     prefix_size: int       # bytes of the file, from its start, that the level needs
     scratch_size: int      # bytes of memory that decoding takes besides its results
+    rms_error: float       # against the encoder's input, in object units; 0: the file does not say
+    max_error: float       # likewise, the largest distance
 
 
 class Plane(NamedTuple):
@@ -296,12 +323,17 @@ class Image:
         """Returns the Level. Raises gim.Error with gim.NO_SUCH_LEVEL beyond the coarsest one."""
         read = self._level(level)
         return Level(level, read.height, read.width, read.vertex_count, read.triangle_count, read.prefix_size,
-                     read.scratch_size)
+                     read.scratch_size, read.rms_error, read.max_error)
 
     @property
     def levels(self):
         """All levels of the image, full resolution first: a tuple of Level."""
         return tuple(self.level(level) for level in range(self._level(0).coarsest_level + 1))
+
+    @property
+    def box(self):
+        """A Box that holds the image at all its levels; None if the file does not tell one."""
+        return _told_box(self._level(0).box)
 
     @property
     def planes(self):
@@ -401,7 +433,8 @@ class File:
         r = self._read
         return Info(r.version, _LAYOUTS[r.layout], _CODINGS[r.coding], r.bits, r.image_count, r.level_count,
                     r.sample_count, r.file_size, tuple(r.origin), bool(r.is_relative), r.step, r.quantizer,
-                    r.index_size, tuple(r.level_psnr[:r.level_count]))
+                    r.index_size, tuple(r.level_rms_error[:r.level_count]), tuple(r.level_max_error[:r.level_count]),
+                    _told_box(r.box) if r.has_boxes else None)
 
     @property
     def images(self):
@@ -413,12 +446,21 @@ class File:
         out of it."""
         return tuple(self._sum_of_level(level) for level in range(self._read.level_count))
 
+    def choose_level(self, distance, vertical_fov, viewport_height, pixel_error=1, shown=None):
+        """The level to show to a camera: the coarsest one whose largest error is at most pixel_error on the screen.
+        distance: from the eye to the surface or its box, object units. vertical_fov: radians. viewport_height: pixels.
+        shown: the level shown before; a coarser one replaces it only with some margin. None: none was shown."""
+        view = _View(distance, vertical_fov, viewport_height, pixel_error)
+        return _lib.gim_choose_level(ctypes.addressof(self._read), ctypes.addressof(view),
+                                     _NO_LEVEL if shown is None else shown)
+
     def _sum_of_level(self, level):
         parts = [read for _, read in self._parts(level)]
         one = parts[0] if self._read.image_count == 1 else None
         return Level(level, one.height if one else None, one.width if one else None,
                      sum(p.vertex_count for p in parts), sum(p.triangle_count for p in parts),
-                     max(p.prefix_size for p in parts), max(p.scratch_size for p in parts))
+                     max(p.prefix_size for p in parts), max(p.scratch_size for p in parts),
+                     parts[0].rms_error, parts[0].max_error)
 
     def _parts(self, level):
         """The images that have the level, with its gim_level_info."""
