@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the Debian packages gim, libgim-decoder0, libgim-dev, python3-gim and gim-doc in build/package, and checks them with
-# lintian. Needs Debian 12 or newer.
+# Makes the Debian packages gim, libgim-decoder0, libgim-dev, python3-gim and gim-doc, and checks them with lintian. They
+# are in build/package, or in FOLDER/package. Needs Debian 12 or newer.
 # Usage: bash tools/package.sh              builds everything as dpkg-buildpackage does; ten minutes on two cores
 #        bash tools/package.sh --twice      builds a second time in another folder; the packages must have the same bytes
 #        bash tools/package.sh --from FOLDER    packages what is built in FOLDER, as build/ci; a minute
@@ -8,7 +8,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-readonly OUT="$GIM_ROOT/build/package"
+out="$GIM_ROOT/build/package"
 built=
 twice=no
 case "${1:-}" in
@@ -18,6 +18,7 @@ case "${1:-}" in
         built=$(cd "${2:?--from needs a folder}" && pwd) || die "no such folder: $2"
         grep -q '^CMAKE_INSTALL_PREFIX:PATH=/usr$' "$built/CMakeCache.txt" ||
             die "$built is not configured with CMAKE_INSTALL_PREFIX=/usr"
+        out="$built/package"
         ;;
     *) die "usage: bash tools/package.sh [--twice | --from FOLDER]" ;;
 esac
@@ -62,13 +63,13 @@ check_with_lintian() {
         say "Skipped: no lintian"
         return 0
     fi
-    lintian --allow-root --fail-on error,warning --tag-display-limit 0 "$OUT"/*.changes || die "lintian has complaints"
+    lintian --allow-root --fail-on error,warning --tag-display-limit 0 "$out"/*.changes || die "lintian has complaints"
 }
 
 compare_builds() {
     local package
-    for package in "$OUT"/*.deb; do
-        cmp "$package" "$OUT/again/$(basename "$package")" || die "a second build gives other bytes; diffoscope tells more"
+    for package in "$out"/*.deb; do
+        cmp "$package" "$out/again/$(basename "$package")" || die "a second build gives other bytes; diffoscope tells more"
     done
     say "Both builds have the same bytes"
 }
@@ -79,13 +80,13 @@ else
     install_packages "${GIM_PACKAGE_PACKAGES[@]}" "${GIM_BUILD_PACKAGES[@]}" python3-numpy
 fi
 check_version
-prepare "$OUT" gim
-[ "$twice" = no ] || prepare "$OUT/again" gim-again # the same files, whatever happens to the tree meanwhile
-build_in "$OUT" gim
+prepare "$out" gim
+[ "$twice" = no ] || prepare "$out/again" gim-again # the same files, whatever happens to the tree meanwhile
+build_in "$out" gim
 check_with_lintian
 if [ "$twice" = yes ]; then
-    build_in "$OUT/again" gim-again
+    build_in "$out/again" gim-again
     compare_builds
 fi
 say "Packages"
-ls -l "$OUT"/*.deb
+ls -l "$out"/*.deb

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
-# Usage: bash tools/test.sh         all of this
-#        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+# Usage: bash tools/test.sh           all of this
+#        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+#        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
+#                                     empty Debian; three minutes, and the build if there is none
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -36,10 +38,20 @@ test_gpu() {
     (test_in_browser)
 }
 
+test_packages() {
+    install_packages "${GIM_BUILD_PACKAGES[@]}"
+    say "Building what the packages hold"
+    configure ci
+    build ci gim gim_encoder gim_decoder gim_decoder_shared
+    bash "$GIM_ROOT/tools/package.sh" --from "$GIM_ROOT/build/ci" || exit 1
+    bash "$GIM_ROOT/tests/packages/run.sh" "$GIM_ROOT/build/ci/package" || exit 1
+}
+
 case "${1:-}" in
     "") ;;
     gpu) test_gpu && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu]" ;;
+    packages) test_packages && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gpu | packages]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14

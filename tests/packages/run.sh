@@ -15,12 +15,12 @@ try_installed() {
     mkdir "$work/files"
     cp "$packages"/*.deb "$HERE/try.sh" "$GIM_ROOT/tests/consumer/main.c" "$work/files"
     rm -f "$work"/files/*dbgsym*
-    mmdebstrap --quiet --variant=apt --format=null \
+    mmdebstrap --quiet --variant=apt --format=null --dpkgopt=force-unsafe-io \
         --customize-hook="touch '$work/marks/begun'" \
         --customize-hook="mkdir \"\$1/files\"" \
         --customize-hook="copy-in $(printf '%s ' "$work"/files/*) /files" \
         --customize-hook='chroot "$1" sh -c "apt-get -qq install --yes --no-install-recommends gcc libc6-dev pkg-config /files/*.deb"' \
-        --customize-hook='chroot "$1" sh /files/try.sh /files/main.c' \
+        --customize-hook='chroot "$1" env -i PATH=/usr/bin:/bin sh /files/try.sh /files/main.c' \
         "$(. /etc/os-release && echo "$VERSION_CODENAME")" /dev/null >"$work/log" 2>&1
 }
 

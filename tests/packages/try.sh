@@ -2,6 +2,7 @@
 # Uses what the packages install: the program, Python, a C program of its own. Runs where they are installed, without the
 # source. Usage: try.sh CONSUMER.c      Flags for the compiler may come in CFLAGS and LDFLAGS.
 set -eu
+unset GIM_LIBRARY GIM_PROGRAM
 consumer=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -26,11 +27,11 @@ gim --version
 gim encode torus.ply torus.gim --size 65 --quiet
 gim info torus.gim >/dev/null
 gim decode torus.gim torus-decoded.ply
-gim compare torus.ply torus.gim
+gim compare torus.ply torus.gim | grep -E "^(test|Hausdorff|PSNR)"
 test -s "${SHARE:-/usr/share}/man/man1/gim-encode.1.gz"
 
 echo "-- Python"
-python3 - <<'PYTHON'
+/usr/bin/python3 - <<'PYTHON'
 import gim
 
 surface = gim.open("torus.gim")
