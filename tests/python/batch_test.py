@@ -144,7 +144,7 @@ class Refusals(unittest.TestCase):
     def test_memory_stays_below_the_limit(self):
         items, threads = SQUARES * 8, 2
         scratch = max(gim.open(item).levels[0].scratch_size for item in SQUARES)
-        need = len(items) * 33 * 33 * 4 * 2 + threads * (scratch + 16 + 33 * 33 * 12)
+        need = len(items) * 33 * 33 * 4 * 2 + threads * (scratch + 16 + 33 * 33 * 13)
         call = lambda most: gim.decode_batch(items, 0, np.float16, "CHW", "xyzm", threads,
                                              limits=gim.Limits(max_memory=most))
         call(need)
@@ -154,6 +154,12 @@ class Refusals(unittest.TestCase):
         peak = tracemalloc.get_traced_memory()[1] - before
         tracemalloc.stop()
         self.assertLess(peak, need + 64 * 1024)  # objects of Python and numpy's temporaries of one row
+        path = VECTORS / "valid" / "sphere-33-lossy.gim"
+        size, need = path.stat().st_size, 2 * 33 * 33 * 12 + scratch + 16
+        gim.decode_batch([path, path], limits=gim.Limits(max_memory=need + size))
+        with self.assertRaises(gim.Error) as caught:
+            gim.decode_batch([path, path], limits=gim.Limits(max_memory=2 * 33 * 33 * 12 + size))
+        self.assertEqual((caught.exception.status, caught.exception.item), (gim.LIMIT_EXCEEDED, 0))
         for most in (0, 1000, len(items) * 33 * 33 * 4 * 2 + 1000):
             with self.assertRaises(gim.Error) as caught:
                 call(most)

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """gim.open and what it returns: sources, levels, several images, limits, arrays that nobody copied."""
 
+import copy
 import mmap
+import pickle
 import tempfile
 import threading
 import tracemalloc
@@ -60,6 +62,12 @@ class Sources(unittest.TestCase):
         file = gim.open(taken)
         with self.assertRaises(BufferError):
             taken.clear()
+
+    def test_copies_have_bytes_of_their_own(self):
+        file = gim.open(self.data, gim.Limits(max_images=3))
+        for again in (pickle.loads(pickle.dumps(file)), copy.copy(file), copy.deepcopy(file.images[0])):
+            self.assertEqual(again.positions(0).tobytes(), self.expected.tobytes())
+        self.assertEqual(copy.copy(file)._limits, file._limits)
 
     def test_empty_input_asks_for_more(self):
         for source in (b"", bytearray(), np.zeros(0, np.uint8)):
@@ -124,6 +132,9 @@ class Contents(unittest.TestCase):
 
     def test_levels_that_are_not_there(self):
         file = gim.open(valid("sphere-33-lossy"))
+        self.assertEqual(file.positions(np.int64(1)).shape, file.positions(1).shape)
+        with self.assertRaises(TypeError):
+            file.positions(0.5)
         for level in (len(file.levels), -1, 2 ** 32, 2 ** 70):
             with self.assertRaises(gim.Error) as caught:
                 file.positions(level)

@@ -17,7 +17,9 @@ program gim, in PATH or named by GIM_PROGRAM.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import operator
 import os
 import re
 import shutil
@@ -98,6 +100,7 @@ def _load_library():
         "gim_decode_mesh": file + surface,
         "gim_decode_hard_mesh": file + [_u32, _u32] + [pointer] * 5 + scratch,
         "gim_decode_grid": file + surface,
+        "gim_read_box": file + [_u32, pointer],
         "gim_read_plane_info": file + [_u32, _u32, _u32, pointer],
         "gim_decode_plane": file + [_u32, _u32, _u32, pointer] + scratch,
         "gim_read_text": file + [pointer, size, pointer] + scratch,
@@ -195,8 +198,8 @@ class _Scratch:
     def reserve(self, size):
         if size <= self.size:
             return
-        self.budget.take(size + _ALIGNMENT - self.size)
-        self.memory = None
+        self.budget.take(size - self.size if self.memory is not None else size + _ALIGNMENT)
+        self.memory = None  # before the next piece, so that both are never there
         self.memory = np.empty(size + _ALIGNMENT, np.uint8)
         self.address = -(-_address(self.memory) // _ALIGNMENT) * _ALIGNMENT
         self.size = size
@@ -317,7 +320,7 @@ class Image:
     def _decode(self, function, level, budget, scratch_size, *outputs):
         scratch = _Scratch(budget)
         scratch.reserve(scratch_size)
-        _check(function(*self._file._arguments, self._index, level, *outputs, scratch.address, scratch.size))
+        _check(function(*self._file._arguments, self._index, _number(level), *outputs, scratch.address, scratch.size))
 
     def level(self, level):
         """Returns the Level. Raises gim.Error with gim.NO_SUCH_LEVEL beyond the coarsest one."""
@@ -333,7 +336,9 @@ class Image:
     @property
     def box(self):
         """A Box that holds the image at all its levels; None if the file does not tell one."""
-        return _told_box(self._level(0).box)
+        box = _Box()
+        _check(_lib.gim_read_box(*self._file._arguments, self._index, ctypes.addressof(box)))
+        return _told_box(box)
 
     @property
     def planes(self):
@@ -407,10 +412,8 @@ class Image:
         be added to the surface, object units). Raises gim.Error with gim.NO_SUCH_PLANE if the file has none."""
         budget, read = _Budget(self._file._limits), self._plane(name, level)
         values = _output(out, (read.height, read.width, 3), budget)
-        scratch = _Scratch(budget)
-        scratch.reserve(read.scratch_size)
-        _check(_lib.gim_decode_plane(*self._file._arguments, self._index, _plane_kind(name), level, _address(values),
-                                     scratch.address, scratch.size))
+        decode = lambda *a: _lib.gim_decode_plane(*a[:4], _plane_kind(name), *a[4:])
+        self._decode(decode, level, budget, read.scratch_size, _address(values))
         return values
 
 
@@ -427,6 +430,9 @@ class File:
                                     ctypes.byref(self._read))
         _check(status)
         self._arguments = (ctypes.addressof(self._read), _address(self._data), self._data.nbytes)
+
+    def __reduce__(self):  # addresses mean nothing in another process, or in a copy
+        return File, (self._data.tobytes(), self._limits)
 
     @property
     def info(self):
@@ -530,6 +536,7 @@ class File:
 
 
 def _number(level):
+    level = operator.index(level)
     if not 0 <= level < 2 ** 32:
         raise Error(NO_SUCH_LEVEL)
     return level
@@ -602,20 +609,16 @@ def decode_batch(items, level=0, dtype=np.float32, layout="HWC", channels="xyz",
         raise ValueError('layout must be "HWC" or "CHW", channels "xyz" or "xyzm"')
     if threads < 0:
         raise ValueError("threads must not be negative")
-    limits = _checked(limits)
-    budget = _SharedBudget(limits)
-    first = _batch_image(items, 0, limits)._level(level)
-    grid = (first.height, first.width)
+    batch = _Batch(items, _number(level), _checked(limits))
+    grid = batch.shape_of_first()
     shape = grid + (len(channels),) if layout == "HWC" else (len(channels),) + grid
-    out = _output(out, (len(items),) + shape, budget, dtype)
-    where = Frames(np.zeros((len(items), 3)), np.ones(len(items)))
-    batch = _Batch(items, level, grid, out, layout, channels, where, limits, budget)
+    batch.aim(grid, _output(out, (len(items),) + shape, batch.budget, dtype), layout, channels)
     batch.run(min(threads or os.cpu_count() or 1, len(items)))
-    return (out, where) if frames else out
+    return (batch.out, batch.frames) if frames else batch.out
 
 
 class _SharedBudget(_Budget):
-    """A _Budget that threads share."""
+    """A _Budget that threads share, and that takes memory back."""
 
     def __init__(self, limits):
         super().__init__(limits)
@@ -626,56 +629,75 @@ class _SharedBudget(_Budget):
             super().take(size)
 
 
-def _batch_image(items, index, limits):
-    item = items[index]
-    try:
-        return item if isinstance(item, Image) else open(item, limits)._only()
-    except Error as error:
-        raise Error(error.status, error.reason, index) from None
-
-
 class _Batch:
     """One call of decode_batch. Its threads take the next item until none is left."""
 
-    def __init__(self, items, level, grid, out, layout, channels, frames, limits, budget):
-        self.items, self.level, self.grid, self.out, self.frames = items, level, grid, out, frames
-        self.limits, self.budget, self.has_mask, self.is_chw = limits, budget, channels == "xyzm", layout == "CHW"
-        self.is_direct = out.dtype == np.float32 and not self.has_mask and not self.is_chw
+    def __init__(self, items, level, limits):
+        self.items, self.level, self.limits, self.budget = items, level, limits, _SharedBudget(limits)
+        self.frames = Frames(np.zeros((len(items), 3)), np.ones(len(items)))
         self.next, self.failed = iter(range(len(items))), False
+
+    def shape_of_first(self):
+        with self._image(0) as image:
+            read = image._level(self.level)
+        return read.height, read.width
+
+    def aim(self, grid, out, layout, channels):
+        self.grid, self.out, self.has_mask, self.is_chw = grid, out, channels == "xyzm", layout == "CHW"
+        self.is_direct = out.dtype == np.float32 and not self.has_mask and not self.is_chw
 
     def run(self, threads):
         if threads == 1:
             self._work()
             return
         with ThreadPoolExecutor(threads) as pool:
-            for done in [pool.submit(self._work) for _ in range(threads)]:
-                done.result()
+            try:
+                for done in [pool.submit(self._work) for _ in range(threads)]:
+                    done.result()
+            except BaseException:
+                self.failed = True
+                raise
+
+    @contextlib.contextmanager
+    def _image(self, index):
+        """The image of an item, and its memory as long as it is used. Errors tell the item."""
+        item, size = self.items[index], 0
+        try:
+            if isinstance(item, (str, os.PathLike)):
+                size = os.stat(item).st_size
+                self.budget.take(size)
+                item = _read_file(item, self.limits if self.limits.max_memory is None else
+                                  self.limits._replace(max_memory=size))
+            yield item if isinstance(item, Image) else open(item, self.limits)._only()
+        except Error as error:
+            raise Error(error.status, error.reason, index) from None
+        self.budget.take(-size)
 
     def _work(self):
         scratch = _Scratch(self.budget)
-        # Files decode into this, and into the result from here, if the result has another form.
-        staging = None if self.is_direct else self.budget.array(self.grid + (3,))
         try:
+            # Files decode into this, and into the result from here, if the result has another form.
+            staging = None
+            if not self.is_direct:
+                staging = self.budget.array(self.grid + (3,))
+                self.budget.take(self.grid[0] * self.grid[1])  # which samples are undefined
             for index in self.next:
                 if self.failed:
                     return
-                self._decode(index, scratch, self.out[index] if staging is None else staging)
+                with self._image(index) as image:
+                    self._decode(index, image, scratch, self.out[index] if staging is None else staging)
         except BaseException:
             self.failed = True
             raise
 
-    def _decode(self, index, scratch, positions):
-        image = _batch_image(self.items, index, self.limits)
-        try:
-            read = image._level(self.level)
-            if (read.height, read.width) != self.grid:
-                raise Error(BAD_ARGUMENT, f"has {read.height} x {read.width} samples at level {self.level}, the first "
-                                          f"item has {self.grid[0]} x {self.grid[1]}")
-            scratch.reserve(read.scratch_size)
-            _check(_lib.gim_decode_positions(*image._file._arguments, image._index, self.level, _address(positions),
-                                             scratch.address, scratch.size))
-        except Error as error:
-            raise Error(error.status, error.reason, index) from None
+    def _decode(self, index, image, scratch, positions):
+        read = image._level(self.level)
+        if (read.height, read.width) != self.grid:
+            raise Error(BAD_ARGUMENT, f"has {read.height} x {read.width} samples at level {self.level}, the first item has "
+                                      f"{self.grid[0]} x {self.grid[1]}")
+        scratch.reserve(read.scratch_size)
+        _check(_lib.gim_decode_positions(*image._file._arguments, image._index, self.level, _address(positions),
+                                         scratch.address, scratch.size))
         if not self.is_direct:
             self._convert(index, positions, may_be_undefined=image._file._read.layout != 0)
         if image._file._read.is_relative:
