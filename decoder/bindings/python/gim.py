@@ -423,7 +423,8 @@ class File:
 
     def __init__(self, data, limits=None):
         self._limits = _checked(limits)
-        self._data = np.frombuffer(data, np.uint8) if memoryview(data).nbytes else np.zeros(0, np.uint8)
+        view = memoryview(data)  # keeps what lends the bytes from moving them
+        self._data = np.frombuffer(view, np.uint8) if view.nbytes else np.zeros(0, np.uint8)
         self._read = _Info()
         of_file = _Limits(*self._limits[:3])
         status = _lib.gim_read_info(_address(self._data), self._data.nbytes, ctypes.byref(of_file),
