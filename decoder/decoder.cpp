@@ -49,7 +49,7 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     info->coding = static_cast<uint32_t>(header.coding);
     info->bits = header.bits;
     info->image_count = header.image_count();
-    info->level_count = header.level_count;
+    info->level_count = header.kept_levels();
     info->chunk_count = header.chunk_count;
     info->sample_count = header.sample_count;
     info->file_size = header.file_size;
@@ -76,9 +76,10 @@ gim_status gim_read_box(const gim_info* info, const void* bytes, size_t size, ui
 gim_status gim_read_level_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                gim_level_info* level_info) {
     if (!level_info) return code(Status::kBadArgument);
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         const Status status = reader.level_info(request, level_info);
         if (status != Status::kOk) return status;
+        level_info->coarsest_level -= request.header.cut_levels;
         level_info->rms_error = info->level_rms_error[level];
         level_info->max_error = info->level_max_error[level];
         level_info->box = image_box(request.header, image);
@@ -96,7 +97,7 @@ gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size,
                            float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         return reader.mesh(request, {positions, normals, texcoords, triangles, nullptr}, {scratch, scratch_bytes});
     });
 }
@@ -105,7 +106,7 @@ gim_status gim_decode_hard_mesh(const gim_info* info, const void* bytes, size_t 
                                 uint32_t* vertex_count, float* positions, float* normals, float* texcoords,
                                 uint32_t* triangles, void* scratch, size_t scratch_bytes) {
     if (!positions || !vertex_count) return code(Status::kBadArgument);
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         gim_level_info shared;
         if (Status s = reader.level_info(request, &shared); s != Status::kOk) return s;
         *vertex_count = shared.vertex_count;
@@ -117,7 +118,7 @@ gim_status gim_decode_grid(const gim_info* info, const void* bytes, size_t size,
                            float* positions, float* normals, float* texcoords, uint32_t* triangles, void* scratch,
                            size_t scratch_bytes) {
     if (!positions) return code(Status::kBadArgument);
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         return reader.grid(request, {positions, normals, texcoords, triangles, nullptr}, {scratch, scratch_bytes});
     });
 }
@@ -142,7 +143,7 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
     if (c.type == ChunkType::kDisplacements) name = "DISP";
     std::memcpy(chunk->name, name, 4);
     chunk->type = static_cast<uint32_t>(c.type);
-    chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.level_count - levels_seen) : -1;
+    chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.kept_levels() - levels_seen) : -1;
     chunk->offset = offset;
     chunk->size = c.size;
     chunk->raw_size = c.raw_size;
@@ -153,7 +154,7 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
 
 gim_status gim_read_seams(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                           uint32_t* class_of, uint32_t* path_count) {
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         return reader.seams(request, class_of, path_count);
     });
 }

@@ -16,7 +16,8 @@ static_assert(GIM_PLANE_NORMALS == 0 && GIM_PLANE_COLORS == 1 && GIM_PLANE_DISPL
 template <class F>
 gim_status with_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
                       uint32_t level, const F& f) {
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_image(info, bytes, size, image, [&](const LevelReader& reader, LevelRequest request) {
+        request.level = level;
         PlaneLevel plane;
         if (Status s = open_plane(reader, request, kind, &plane); s != Status::kOk) return s;
         return f(reader, request, plane);

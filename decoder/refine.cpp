@@ -80,11 +80,11 @@ struct Detailed {
     uint64_t scratch = 0;
 
     LevelRequest finer_than(const LevelRequest& request) const {
-        return {request.header, request.file, request.limits, request.image, 0, finer};
+        return {request.header, request.file, request.limits, request.image, request.level, finer};
     }
 };
 
-// request: for level 0.
+// request: for the finest level.
 Status read_detailed(const LevelReader& reader, const LevelRequest& request, uint32_t plane_level, Detailed* d) {
     const LevelRequest of_plane = {request.header, request.file, request.limits, request.image, plane_level};
     if (Status s = open_plane(reader, of_plane, GIM_PLANE_DISPLACEMENTS, &d->plane); s != Status::kOk) return s;
@@ -131,7 +131,7 @@ bool is_sound(const gim_rule& rule) {
 gim_status gim_read_domain_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                 gim_domain_info* out) {
     if (!out) return GIM_BAD_ARGUMENT;
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         DomainShape shape;
         uint64_t scratch = 0;
         if (Status s = read_shape(reader, request, &shape, &scratch); s != Status::kOk) return s;
@@ -144,7 +144,7 @@ gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size,
                            const float* positions, void* memory, size_t memory_size, void* scratch, size_t scratch_size,
                            const gim_domain** domain) {
     if (!positions || !domain || !is_aligned(memory)) return GIM_BAD_ARGUMENT;
-    return with_image(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
         DomainShape shape;
         uint64_t of_scratch = 0;
         if (Status s = read_shape(reader, request, &shape, &of_scratch); s != Status::kOk) return s;
@@ -161,7 +161,7 @@ gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size,
 gim_status gim_read_detailed_domain_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                          uint32_t plane_level, gim_domain_info* out) {
     if (!out) return GIM_BAD_ARGUMENT;
-    return with_image(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
         Detailed d;
         if (Status s = read_detailed(reader, request, plane_level, &d); s != Status::kOk) return s;
         *out = describe(d.shape, d.scratch);
@@ -174,7 +174,7 @@ gim_status gim_open_detailed_domain(const gim_info* info, const void* bytes, siz
                                     float* detailed, void* memory, size_t memory_size, void* scratch,
                                     size_t scratch_size, const gim_domain** domain) {
     if (!positions || !displacements || !detailed || !domain || !is_aligned(memory)) return GIM_BAD_ARGUMENT;
-    return with_image(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, 0, [&](const LevelReader& reader, const LevelRequest& request) {
         Detailed d;
         if (Status s = read_detailed(reader, request, plane_level, &d); s != Status::kOk) return s;
         if (Status s = check_scratch({scratch, scratch_size}, d.scratch); s != Status::kOk) return s;

@@ -14,7 +14,7 @@ Status reopen(const gim_info* info, const void* bytes, size_t size, Header* head
         s != Status::kOk)
         return s;
     const bool same_file = header->index_size == info->index_size && header->file_size == info->file_size &&
-                           header->image_count() == info->image_count && header->level_count == info->level_count;
+                           header->image_count() == info->image_count && header->kept_levels() == info->level_count;
     return same_file ? Status::kOk : Status::kBadArgument;
 }
 

@@ -30,7 +30,7 @@ gim_box image_box(const Header& header, uint32_t image) {
 
 void tell_bounds(const Header& header, gim_info* info) {
     for (size_t k = 0; k < header.level_errors.size() / kErrorsOfLevel; ++k) {
-        const size_t level = header.level_count - 1 - k;
+        const size_t level = header.kept_levels() - 1 - k;
         info->level_rms_error[level] = error_of(header.level_errors[kErrorsOfLevel * k], header);
         info->level_max_error[level] = error_of(header.level_errors[kErrorsOfLevel * k + 1], header);
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
-constexpr uint8_t kLossyFlag = 0x04, kBoundsFlag = 0x08, kWideOriginFlag = 0x10, kReservedFlags = 0xE0,
+constexpr uint8_t kLossyFlag = 0x04, kBoundsFlag = 0x08, kWideOriginFlag = 0x10, kCutFlag = 0x20, kReservedFlags = 0xC0,
                   kLayoutMask = 0x03;
 constexpr uint8_t kTileExponentMask = 0x0F, kSharpWaveletFlag = 0x10, kSharpEdgesFlag = 0x20, kReservedTileFlags = 0xC0;
 
@@ -34,7 +34,7 @@ bool in_range(Real value, Real low, Real high) {
     return value >= low && value <= high;
 }  // false for a NaN
 
-// Checks the chunks: SEAM once, then level_count times LEVL, then each kind of plane at most once. META may stand anywhere,
+// Checks the chunks: SEAM once, then kept_levels() times LEVL, then each kind of plane at most once. META may stand anywhere,
 // but once; unknown optional chunks may stand anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
@@ -61,7 +61,7 @@ Status check_index(Header* header) {
             case ChunkType::kColors:
             case ChunkType::kDisplacements: {
                 const uint32_t kind = 1u << static_cast<uint32_t>(chunk.type);
-                if (!chunk.optional || chunk.zstd || (planes_seen & kind) != 0 || levels != header->level_count)
+                if (!chunk.optional || chunk.zstd || (planes_seen & kind) != 0 || levels != header->kept_levels())
                     return Status::kMalformed;
                 planes_seen |= kind;
                 break;
@@ -70,7 +70,7 @@ Status check_index(Header* header) {
                 if (!chunk.optional) return Status::kUnsupportedVersion;
         }
     }
-    return seams == 1 && levels == header->level_count ? Status::kOk : Status::kMalformed;
+    return seams == 1 && levels == header->kept_levels() ? Status::kOk : Status::kMalformed;
 }
 
 Status parse_sides(ByteReader* reader, const ContainerLimits& limits, std::span<const uint8_t> file, Header* header) {
@@ -84,13 +84,13 @@ Status parse_sides(ByteReader* reader, const ContainerLimits& limits, std::span<
     header->side_exponents = file.subspan(sides_at, images);
     uint8_t largest = 0;
     for (const uint8_t j : header->side_exponents) {
-        if (j < 1 || j > kMaxSideExponent) return Status::kMalformed;
-        const uint64_t side = (uint64_t{1} << j) + 1;
+        if (j <= header->cut_levels || j > kMaxSideExponent) return Status::kMalformed;
+        const uint64_t side = (uint64_t{1} << (j - header->cut_levels)) + 1;
         header->sample_count += side * side;  // at most 2^16 * 2^29
         largest = std::max(largest, j);
     }
     if (largest < header->level_count) return Status::kMalformed;
-    if ((1u << largest) + 1 > limits.max_side || header->sample_count > limits.max_samples)
+    if ((1u << (largest - header->cut_levels)) + 1 > limits.max_side || header->sample_count > limits.max_samples)
         return Status::kLimitExceeded;
     return Status::kOk;
 }
@@ -125,9 +125,9 @@ Status parse_tiles(ByteReader* reader, const ContainerLimits& limits, Header* he
     t.tiles = static_cast<uint32_t>(tiles);
     t.vertices = static_cast<uint32_t>(vertices);
     t.rim = static_cast<uint32_t>(rim);
-    const TileAtlas atlas(t.tiles, t.intervals(0));
-    header->sample_count = atlas.samples();  // at most 2^21 * 2^21
-    if (header->sample_count > kMostTileSamples) return Status::kMalformed;
+    if (TileAtlas(t.tiles, t.intervals(0)).samples() > kMostTileSamples) return Status::kMalformed;  // at most 2^42
+    const TileAtlas atlas(t.tiles, t.intervals(header->cut_levels));
+    header->sample_count = atlas.samples();
     if (std::max(atlas.width(), atlas.height()) > limits.max_side || header->sample_count > limits.max_samples)
         return Status::kLimitExceeded;
     return Status::kOk;
@@ -148,7 +148,7 @@ Status parse_origin(ByteReader* reader, bool is_wide, Header* header) {
 }
 
 bool parse_bounds(ByteReader* reader, std::span<const uint8_t> file, Header* header) {
-    const size_t errors = kErrorsOfLevel * header->level_count, boxes = kBoxSize * header->image_count();
+    const size_t errors = kErrorsOfLevel * header->kept_levels(), boxes = kBoxSize * header->image_count();
     const size_t at = reader->position();
     if (!reader->skip(errors + boxes)) return false;
     header->level_errors = file.subspan(at, errors);
@@ -198,6 +198,11 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
     header->bits = bits;
     header->level_count = levels;
+    if (kind & kCutFlag) {
+        uint8_t cut = 0;
+        if (!reader.read_u8(&cut) || cut == 0 || cut >= levels) return Status::kMalformed;
+        header->cut_levels = cut;
+    }
     const Status shape = header->layout == FileLayout::kCharts  ? parse_rectangle(&reader, limits, header)
                          : header->layout == FileLayout::kTiles ? parse_tiles(&reader, limits, header)
                                                                 : parse_sides(&reader, limits, file, header);
@@ -231,11 +236,13 @@ Status read_payload(std::span<const uint8_t> file, const Chunk& chunk, uint64_t 
 
 std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chunk> chunks) {
     std::vector<uint8_t> rest;  // everything after Index_Size
-    rest.push_back(static_cast<uint8_t>(
-        static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
-        (header.level_errors.empty() ? 0 : kBoundsFlag) | (header.wide_origin ? kWideOriginFlag : 0)));
+    rest.push_back(
+        static_cast<uint8_t>(static_cast<uint32_t>(header.layout) | (header.coding == Coding::kLossy ? kLossyFlag : 0) |
+                             (header.level_errors.empty() ? 0 : kBoundsFlag) |
+                             (header.wide_origin ? kWideOriginFlag : 0) | (header.cut_levels > 0 ? kCutFlag : 0)));
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
+    if (header.cut_levels > 0) rest.push_back(static_cast<uint8_t>(header.cut_levels));
     if (header.layout == FileLayout::kCharts) {
         append_leb128(header.width, &rest);
         append_leb128(header.height, &rest);

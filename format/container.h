@@ -41,6 +41,9 @@ struct ContainerLimits {
     uint32_t max_side = 16385;
 };
 
+// For bytes of our own.
+inline constexpr ContainerLimits kNoLimits = {UINT64_MAX, UINT32_MAX, UINT32_MAX};
+
 inline constexpr uint32_t kMinBits = 8, kMaxBits = 20;
 inline constexpr uint32_t kMaxImages = 65536;
 inline constexpr uint32_t kMaxAtlasSide = 65536;
@@ -97,24 +100,26 @@ struct Header : Units {
     // Where the units' origin lies in object space, if the file has a binary64 origin. Such a file stores no other
     // origin: that of the units is 0, and decoded positions are relative to this one.
     std::optional<std::array<double, 3>> wide_origin;
-    uint32_t level_count = 0;
+    uint32_t level_count = 0;                 // of the file before it was cut
+    uint32_t cut_levels = 0;                  // so many of them, the finest ones, are cut off
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
     uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
     TileShape tiles;                          // kTiles
     // Both are empty, or both are there (format/bounds.h).
-    std::span<const uint8_t> level_errors;  // codes of the RMS and the maximum error of each level, coarsest first
+    std::span<const uint8_t> level_errors;  // codes of the RMS and the maximum error of each level kept, coarsest first
     std::span<const uint8_t> boxes;         // kBoxSize bytes per image
 
     // Derived from the file.
     std::span<const uint8_t> index;
     uint32_t chunk_count = 0;
     uint32_t index_size = 0;    // bytes from the start of the file to the first chunk
-    uint64_t sample_count = 0;  // of all images, or of the rectangle, or of the atlas of tiles
+    uint64_t sample_count = 0;  // of all images or of the atlas of tiles, at the finest level kept; or of the rectangle
     uint64_t file_size = 0;
 
     uint32_t image_count() const {
         return layout == FileLayout::kSquares ? static_cast<uint32_t>(side_exponents.size()) : 1;
     }
+    uint32_t kept_levels() const { return level_count - cut_levels; }
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
     // Levels 0 .. level_count_of(image)-1 are stored; the coarsest of them has at least 3 samples a side.
     uint32_t level_count_of(uint32_t image) const {

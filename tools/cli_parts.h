@@ -15,6 +15,7 @@ struct Subcommand {
 
 Subcommand add_encode(CLI::App& app);
 Subcommand add_decode(CLI::App& app);
+Subcommand add_cut(CLI::App& app);
 Subcommand add_info(CLI::App& app);
 Subcommand add_compare(CLI::App& app);
 Subcommand add_emboss(CLI::App& app);

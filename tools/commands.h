@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gim/cut.h"
 #include "gim/emboss.h"
 #include "gim/encoder.h"
 #include "tools/input.h"
@@ -35,6 +36,12 @@ struct DecodeCommand {
     std::string normal_map, color_map;  // .png or .exr to write; empty: none
 };
 int run_decode(const DecodeCommand& command);
+
+struct CutCommand {
+    std::string input, output;
+    CutOptions options;
+};
+int run_cut(const CutCommand& command);
 
 struct EmbossCommand {
     std::string input, output;

@@ -25,6 +25,7 @@ Status open_level(const LevelRequest& request, uint32_t most, Level* level) {
     while (level->coarsest < most && level->coarsest + 1 < header.level_count_of(request.image) &&
            level_is_closed(level->seams, (steps >> (level->coarsest + 1)) + 1))
         ++level->coarsest;
+    if (header.cut_levels > level->coarsest && most >= header.cut_levels) return Status::kMalformed;
     if (request.level > level->coarsest) return Status::kNoSuchLevel;
     level->side = (steps >> request.level) + 1;
     level->class_count = ring_class_count(level->seams, level->side);

@@ -11,9 +11,9 @@
 
 namespace gim {
 
-// Runs `body` on `threads` threads (0: all cores). Turns exceptions into an Error.
+// Runs `body`, which returns a Result, on `threads` threads (0: all cores). Turns exceptions into an Error.
 template <class Body>
-Result<Encoded> guarded(uint32_t threads, const Body& body) {
+auto guarded(uint32_t threads, const Body& body) -> decltype(body()) {
     try {
         tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
         return arena.execute(body);

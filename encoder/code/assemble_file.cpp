@@ -50,9 +50,8 @@ std::vector<uint8_t> join(const Header& header, const std::vector<Payload>& payl
 template <class Change>
 std::vector<uint8_t> with_header(std::span<const uint8_t> file, const Change& change) {
     std::vector<uint8_t> changed(file.begin(), file.end());
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
     Header header;
-    if (parse_header(file, no_limits, &header) != Status::kOk || !change(header)) return changed;
+    if (parse_header(file, kNoLimits, &header) != Status::kOk || !change(header)) return changed;
     std::vector<Chunk> chunks;
     ChunkWalk walk(header);
     Chunk chunk;
@@ -77,9 +76,8 @@ std::vector<uint8_t> assemble_file(const Header& header, std::span<const uint8_t
 }
 
 std::vector<uint8_t> replace_planes(std::span<const uint8_t> file, std::span<const CodedPlane> planes) {
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
     Header header;
-    if (parse_header(file, no_limits, &header) != Status::kOk) return {file.begin(), file.end()};
+    if (parse_header(file, kNoLimits, &header) != Status::kOk) return {file.begin(), file.end()};
     std::vector<Payload> payloads;
     std::vector<bool> is_placed(planes.size(), false);
     ChunkWalk walk(header);

@@ -15,8 +15,6 @@
 namespace gim {
 namespace {
 
-constexpr ContainerLimits kNoLimits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
-
 // Gives all samples of a class the values of its first one.
 void equalize_classes(const SeamTable& seams, uint32_t side, std::vector<float>& values) {
     std::vector<uint32_t> class_of(ring_length(side));

@@ -220,9 +220,8 @@ Result<Embossed> emboss(std::span<const uint8_t> file, const HeightPicture& pict
     heights.filter_for(embossed.spacing);
 
     // The header's step turns units into object space.
-    const ContainerLimits no_limits{UINT64_MAX, UINT32_MAX, UINT32_MAX};
     Header header;
-    if (parse_header(file, no_limits, &header) != Status::kOk) return wrong("the .gim file is damaged");
+    if (parse_header(file, kNoLimits, &header) != Status::kOk) return wrong("the .gim file is damaged");
     std::vector<Displacements> planes;
     for (uint32_t i = 0; i < header.image_count(); ++i) {
         std::optional<FinestImage> other;

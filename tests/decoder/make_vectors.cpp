@@ -20,6 +20,7 @@
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "format/tile_atlas.h"
+#include "gim/cut.h"
 #include "tests/decoder/vectors.h"
 #include "tests/encoder/charts/made_charts.h"
 #include "tests/encoder/tiles/made_tiles.h"
@@ -247,6 +248,17 @@ Bytes far_away(const Bytes& file) {
     return with_parts(file, [](Parts& p) { p.header.wide_origin = {500000.1, -4000000.3, 0x1p100}; });
 }
 
+Bytes cut_levels(const Bytes& file, uint32_t level) {
+    CutOptions options;
+    options.level = level;
+    auto made = cut(file, options);
+    if (!made.ok()) {
+        std::fprintf(stderr, "cut: %s\n", made.error().message.c_str());
+        std::abort();
+    }
+    return made.value().bytes;
+}
+
 Bytes with_boxes(const Bytes& file) {
     auto boxes = measure_boxes(file);
     if (!boxes.ok()) {
@@ -351,6 +363,11 @@ void write_valid(Writer& out) {
     out.valid("bounds-two-images",
               with_boxes(encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, measured)));
     out.valid("bounds-wide-origin", with_boxes(far_away(bounded)));
+    // Without their finest levels.
+    const Bytes both = encode({hill(33, folded_sides(), 2, 11), hill(17, tube(), 2, 12)}, measured);
+    out.valid("cut-two-images", cut_levels(with_boxes(both), 1));
+    out.valid("cut-charts", cut_levels(encode_charts(open_sheet(2), lossy(12, 3, 25)), 1));
+    out.valid("cut-tiles", cut_levels(encode_tiles(tiles(cube(), 3, 9, 3), lossless(12, 3)), 2));
     // The same samples as in the files without "wide-origin", far from 0.
     out.valid("wide-origin-lossless", far_away(encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5))));
     out.valid("wide-origin-two-images-lossy",
@@ -566,6 +583,15 @@ void write_invalid_container(Writer& out, const Bytes& plain, const Bytes& fine)
     header("malformed.quantizer-zero", [](Parts& p) { p.header.quantizer = 0; });
     header("malformed.quantizer-nan", [](Parts& p) { p.header.quantizer = std::numeric_limits<float>::quiet_NaN(); });
     header("malformed.cell-area-without-frames", [](Parts& p) { p.header.tangential = 0; });
+    header("malformed.cut-all-levels", [](Parts& p) { p.header.cut_levels = p.header.level_count; });
+    header("malformed.cut-whole-image", [](Parts& p) { p.header.cut_levels = p.exponents[1]; });
+    header("malformed.cut-but-there", [](Parts& p) { p.header.cut_levels = 1; });
+    // The seams need a side of 17; the finest level left has 9.
+    Random random(21);
+    const Sideband fine_nodes = random_sideband(random, 17, 4, 1, false);
+    out.invalid("malformed.cut-to-an-open-level",
+                with_parts(encode({hill(33, fine_nodes, 6, 14)}, lossy(12, 17, 5)),
+                           [](Parts& p) { p.header.level_count += p.header.cut_levels = 2; }));
     const Bytes errors(kErrorsOfLevel * take_apart(fine).header.level_count, 1);
     const auto boxed = [&](const char* name, const Bytes& box) {
         Bytes boxes(2 * kBoxSize, 0);

@@ -200,6 +200,7 @@ TEST(Encode, BoxesHoldEveryLevelOfTheirImageAndLittleMore) {
             EncodeOptions options = small_options();
             options.layout = layout;
             options.samples = 4000;
+            options.fit = FitStrength::kOff;
             const auto encoded = encode(mesh, options);
             ASSERT_TRUE(encoded.ok()) << encoded.error().message;
             expect_tight_boxes(encoded.value().bytes);

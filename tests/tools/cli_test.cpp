@@ -479,6 +479,27 @@ TEST_F(Cli, EveryLevelsPsnrIsToldByEncodeAndByInfo) {
     }
 }
 
+TEST_F(Cli, CutKeepsTheCoarserLevels) {
+    const std::string small = folder.file("small.gim"), from_small = folder.file("a.obj"),
+                      from_whole = folder.file("b.obj");
+    const Outcome run = gim({"cut", gim_path(), small, "--level", "1"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("from level 1 on"), std::string::npos) << run.out;
+    EXPECT_LT(std::filesystem::file_size(small), std::filesystem::file_size(gim_path()));
+    EXPECT_EQ(gim({"info", small}).status, 0);
+    ASSERT_EQ(gim({"decode", small, from_small}).status, 0);
+    ASSERT_EQ(gim({"decode", gim_path(), from_whole, "--level", "1"}).status, 0);
+    EXPECT_EQ(load_text(from_small), load_text(from_whole));
+
+    EXPECT_EQ(gim({"cut", gim_path(), small}).status, 2);
+    EXPECT_EQ(gim({"cut", gim_path(), small, "--level", "1", "--bytes", "99"}).status, 2);
+    EXPECT_EQ(gim({"cut", gim_path(), small, "--drop", "nothing"}).status, 2);
+    const Outcome impossible = gim({"cut", gim_path(), folder.file("none.gim"), "--bytes", "99"});
+    EXPECT_EQ(impossible.status, 1);
+    EXPECT_NE(impossible.err.find("the coarsest level"), std::string::npos) << impossible.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("none.gim")));
+}
+
 TEST_F(Cli, UnwritableOutputsAreFoundBeforeTheWork) {
     save(folder.file("file"), "");
     for (const std::string& output :

@@ -112,6 +112,24 @@ TEST(Emboss, DisplacesThePictureByItsDepthAndNothingElse) {
     }
 }
 
+TEST(Emboss, TheBoxOfTheFileGrowsWithThePicture) {
+    for (const Layout layout : kLayouts) {
+        const Result<Embossed> embossed = emboss(torus_file(layout), block(64, 32), on_top());
+        ASSERT_TRUE(embossed.ok());
+        const Bytes& file = embossed.value().bytes;
+        gim_info plain, info;
+        ASSERT_EQ(gim_read_info(torus_file(layout).data(), torus_file(layout).size(), nullptr, &plain), GIM_OK);
+        ASSERT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
+        ASSERT_EQ(plain.has_boxes + info.has_boxes, 2u);
+        EXPECT_LT(plain.box.high[2], kTube + 0.5 * kDepth);
+        const DecodedImage image = decoded(file, WithDetails::kYes);
+        for (size_t i = 0; i < image.positions.size(); ++i) {
+            ASSERT_GE(image.positions[i], info.box.low[i % 3]);
+            ASSERT_LE(image.positions[i], info.box.high[i % 3]);
+        }
+    }
+}
+
 // A reader without displacements sees the file as it was.
 TEST(Emboss, TheSurfaceBelowKeepsItsBits) {
     for (const Layout layout : kLayouts) {
