@@ -54,7 +54,8 @@ class Encode(unittest.TestCase):
         quads = np.stack([i * 8 + j, (i + 1) % 12 * 8 + j, (i + 1) % 12 * 8 + (j + 1) % 8, i * 8 + (j + 1) % 8], -1)
         colors = np.zeros((len(vertices), 3), np.uint8)
         colors[:, 1] = 200
-        data = gim.encode(vertices, quads.reshape(-1, 4), vertex_colors=colors, vertex_normals=vertices, normals=17, **FAST)
+        data = gim.encode(vertices, quads.reshape(-1, 4), vertex_colors=colors, vertex_normals=vertices, normals=17,
+                          **FAST)
         file = gim.open(data)
         self.assertEqual(file.planes, ("normals", "colors"))
         self.assertEqual(file.plane("normals").shape, (17, 17, 3))

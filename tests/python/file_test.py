@@ -225,8 +225,8 @@ class Arrays(unittest.TestCase):
         def decode():
             for _ in range(50):
                 mesh = self.file.mesh(0, normals=True)
-                if mesh.normals.tobytes() != expected.normals.tobytes() or not np.array_equal(mesh.faces, expected.faces):
-                    wrong.append(1)
+                same = [a.tobytes() == b.tobytes() for a, b in zip(mesh[:3], expected[:3])]
+                wrong.extend([1] * same.count(False))
 
         threads = [threading.Thread(target=decode) for _ in range(4)]
         for thread in threads:

@@ -254,7 +254,7 @@ class Info(NamedTuple):
     step: float        # length of a quantization step
     quantizer: float
     index_size: int    # a prefix of so many bytes suffices for gim.open
-    rms_errors: Tuple[float, ...]  # of each level against the encoder's input, in object units; 0: the file does not say
+    rms_errors: Tuple[float, ...]  # of levels against the encoder's input, in object units; 0: the file does not say
     max_errors: Tuple[float, ...]  # likewise, the largest distance
     box: Optional[Box]             # holds all images at all levels; None: the file does not say
 
@@ -284,7 +284,7 @@ class Plane(NamedTuple):
 
 class Mesh(NamedTuple):
     """vertices: n x 3 float32. faces: m x 3 uint32, counter-clockwise seen from outside. normals: n x 3 float32 of unit
-    length, 0 where the surface has none. texcoords: n x 2 float32, u along columns, v along rows. None: not asked for."""
+    length, 0 where the surface has none. texcoords: n x 2 float32, u along columns, v along rows. None: not wanted."""
     vertices: np.ndarray
     faces: np.ndarray
     normals: Optional[np.ndarray]
@@ -292,8 +292,8 @@ class Mesh(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """positions: height x width x 3 float32, NaN where no surface is. normals, texcoords: as many rows and columns. faces:
-    m x 3 uint32; sample (row, column) has the number row * width + column. None: not asked for."""
+    """positions: height x width x 3 float32, NaN where no surface is. normals, texcoords: as many rows and columns.
+    faces: m x 3 uint32; sample (row, column) has the number row * width + column. None: not wanted."""
     positions: np.ndarray
     normals: Optional[np.ndarray]
     texcoords: Optional[np.ndarray]
@@ -366,8 +366,8 @@ class Image:
         return tuple(levels)
 
     def positions(self, level=0, out=None):
-        """Decodes the geometry image: height x width x 3 float32, x y z in object units, NaN where no surface is. Samples of
-        one point of the surface are equal. Values are relative to info.origin if info.is_relative.
+        """Decodes the geometry image: height x width x 3 float32, x y z in object units, NaN where no surface is. Samples
+        of one point of the surface are equal. Values are relative to info.origin if info.is_relative.
         out: an array of that shape to write into; else a new one is made."""
         budget, read = _Budget(self._file._limits), self._level(level)
         positions = _output(out, (read.height, read.width, 3), budget)
@@ -393,8 +393,9 @@ class Image:
         mesh, count = _empty_mesh(read.width * read.height, read.triangle_count, normals, texcoords, budget), _u32()
         self._decode(_lib.gim_decode_hard_mesh, level, budget, read.scratch_size, ctypes.addressof(count),
                      _address(mesh.vertices), _address(mesh.normals), _address(mesh.texcoords), _address(mesh.faces))
-        cut = [None if array is None else array[:count.value] for array in (mesh.vertices, mesh.normals, mesh.texcoords)]
-        return Mesh(cut[0], mesh.faces, cut[1], cut[2])
+        used = slice(count.value)
+        return Mesh(mesh.vertices[used], mesh.faces, mesh.normals[used] if normals else None,
+                    mesh.texcoords[used] if texcoords else None)
 
     def grid(self, level=0, normals=False, texcoords=False, faces=False, out=None):
         """Decodes the geometry image with what texturing needs: a Grid. out: an array for the positions."""
@@ -408,8 +409,8 @@ class Image:
 
     def plane(self, name, level=0, out=None):
         """Decodes an attribute plane: height x width x 3 float32, at a resolution of its own.
-        name: "normals" (unit length, out of the surface), "colors" (red green blue in 0..1, sRGB) or "displacements" (to
-        be added to the surface, object units). Raises gim.Error with gim.NO_SUCH_PLANE if the file has none."""
+        name: "normals" (unit length, out of the surface), "colors" (red green blue in 0..1, sRGB) or "displacements"
+        (to be added to the surface, object units). Raises gim.Error with gim.NO_SUCH_PLANE if the file has none."""
         budget, read = _Budget(self._file._limits), self._plane(name, level)
         values = _output(out, (read.height, read.width, 3), budget)
         decode = lambda *a: _lib.gim_decode_plane(*a[:4], _plane_kind(name), *a[4:])
@@ -418,7 +419,7 @@ class Image:
 
 
 class File:
-    """A .gim file. info: an Info. images: a tuple of Image, one for each component of the surface in layout "gim", else one.
+    """A .gim file. info: an Info. images: a tuple of Image, in layout "gim" one for each component of the surface.
     The bytes that it was opened with must not change while it is used; they are not copied."""
 
     def __init__(self, data, limits=None):
@@ -449,8 +450,8 @@ class File:
 
     @property
     def levels(self):
-        """All levels of the file, full resolution first: a tuple of Level. Images that are too small for a level are left
-        out of it."""
+        """All levels of the file, full resolution first: a tuple of Level. Images that are too small for a level are
+        left out of it."""
         return tuple(self._sum_of_level(level) for level in range(self._read.level_count))
 
     def choose_level(self, distance, vertical_fov, viewport_height, pixel_error=1, shown=None):
@@ -588,10 +589,10 @@ def decode_batch(items, level=0, dtype=np.float32, layout="HWC", channels="xyz",
                  limits=None):
     """Decodes the geometry images of several files into one array.
 
-    items     a sequence of what gim.open takes, of File or of Image. All must have one image, and as many rows and columns
-              at this level as the first
-    dtype     float32: object units, the bits of Image.positions. float16: the middle of an item's bounding box is 0, its
-              longest side reaches from -1 to 1. uint16: its lower corner is 0, the longest side reaches to 65535
+    items     a sequence of what gim.open takes, of File or of Image. All must have one image, and as many rows and
+              columns at this level as the first
+    dtype     float32: object units, the bits of Image.positions. float16: the middle of an item's bounding box is 0,
+              its longest side reaches from -1 to 1. uint16: its lower corner is 0, the longest side reaches to 65535
     layout    "HWC": n x height x width x channels. "CHW": n x channels x height x width
     channels  "xyz". "xyzm": a fourth channel is 1 (uint16: 65535) on the surface and 0 elsewhere. Where no surface is,
               x y z are 0 with "xyzm" and with uint16, else NaN
@@ -694,8 +695,8 @@ class _Batch:
     def _decode(self, index, image, scratch, positions):
         read = image._level(self.level)
         if (read.height, read.width) != self.grid:
-            raise Error(BAD_ARGUMENT, f"has {read.height} x {read.width} samples at level {self.level}, the first item has "
-                                      f"{self.grid[0]} x {self.grid[1]}")
+            raise Error(BAD_ARGUMENT, f"has {read.height} x {read.width} samples at level {self.level}, the first item "
+                                      f"has {self.grid[0]} x {self.grid[1]}")
         scratch.reserve(read.scratch_size)
         _check(_lib.gim_decode_positions(*image._file._arguments, image._index, self.level, _address(positions),
                                          scratch.address, scratch.size))
@@ -751,8 +752,8 @@ def encode(vertices, faces, *, vertex_normals=None, vertex_colors=None, program=
     options    those of `gim encode --help` with _ for -: psnr=70, size=257, layout="tiles", max_error="0.3%",
                lossless=True, normals=512 (the side of a normal map). None and False leave an option out
 
-    The mesh goes to the program through a pipe; no file is written. What the program warns of comes as UserWarning. If it
-    fails, gim.Error has its message and its exit_status."""
+    The mesh goes to the program through a pipe; no file is written. What the program warns of comes as UserWarning. If
+    it fails, gim.Error has its message and its exit_status."""
     command = [_find_program(program), "encode", "-", "-", "--format=ply", "--quiet"]
     command += [word for name, value in options.items() for word in _option(name, value)]
     run = subprocess.run(command, input=_ply(vertices, faces, vertex_normals, vertex_colors), stdout=subprocess.PIPE,
