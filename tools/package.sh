@@ -77,7 +77,7 @@ compare_builds() {
 if [ -n "$built" ]; then
     install_packages "${GIM_PACKAGE_PACKAGES[@]}"
 else
-    install_packages "${GIM_PACKAGE_PACKAGES[@]}" "${GIM_BUILD_PACKAGES[@]}" python3-numpy
+    install_packages "${GIM_PACKAGE_PACKAGES[@]}" "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}"
 fi
 check_version
 prepare "$out" gim

@@ -18,6 +18,9 @@ readonly GIM_GPU_PACKAGES=(
     libepoxy-dev libegl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
 )
 
+# Of gim.py and its tests.
+readonly GIM_PYTHON_PACKAGES=(python3 python3-numpy)
+
 # Of tools/package.sh, besides what the build needs.
 readonly GIM_PACKAGE_PACKAGES=(dpkg-dev debhelper dh-python python3)
 

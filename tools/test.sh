@@ -39,7 +39,7 @@ test_gpu() {
 }
 
 test_packages() {
-    install_packages "${GIM_BUILD_PACKAGES[@]}"
+    install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}"
     say "Building what the packages hold"
     configure ci
     build ci gim gim_encoder gim_decoder gim_decoder_shared
@@ -54,7 +54,7 @@ case "${1:-}" in
     *) die "usage: bash tools/test.sh [gpu | packages]" ;;
 esac
 
-install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
+install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
 bash "$GIM_ROOT/tools/lint.sh" --format-only
 configure_and_build ci -DGIM_BUILD_BENCHMARKS=ON
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the packages in an empty Debian and uses them there (try.sh). Where mmdebstrap or the network is missing, it unpacks
-# them into a folder and uses them from there, and says so. Usage: run.sh FOLDER-OF-PACKAGES
+# Installs the packages in an empty Debian and uses them there (try.sh). Where mmdebstrap or the network is missing, it
+# unpacks them into a folder and uses them from there, and says so. Usage: run.sh FOLDER-OF-PACKAGES
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../tools/setup.sh"
 packages=$(cd "$1" && pwd)
@@ -13,14 +13,14 @@ chmod 755 "$work"
 try_installed() {
     mkdir -m 777 "$work/marks"
     mkdir "$work/files"
-    cp "$packages"/*.deb "$HERE/try.sh" "$GIM_ROOT/tests/consumer/main.c" "$work/files"
+    cp "$packages"/*.deb "$HERE/try.sh" "$GIM_ROOT"/tests/consumer/main.{c,cpp} "$work/files"
     rm -f "$work"/files/*dbgsym*
     mmdebstrap --quiet --variant=apt --format=null --dpkgopt=force-unsafe-io \
         --customize-hook="touch '$work/marks/begun'" \
         --customize-hook="mkdir \"\$1/files\"" \
         --customize-hook="copy-in $(printf '%s ' "$work"/files/*) /files" \
-        --customize-hook='chroot "$1" sh -c "apt-get -qq install --yes --no-install-recommends gcc libc6-dev pkg-config /files/*.deb"' \
-        --customize-hook='chroot "$1" env -i PATH=/usr/bin:/bin sh /files/try.sh /files/main.c' \
+        --customize-hook='chroot "$1" sh -c "apt-get -qq install --yes --no-install-recommends g++ pkg-config /files/*.deb"' \
+        --customize-hook='chroot "$1" env -i PATH=/usr/bin:/bin sh /files/try.sh /files' \
         "$(. /etc/os-release && echo "$VERSION_CODENAME")" /dev/null >"$work/log" 2>&1
 }
 
@@ -31,7 +31,7 @@ try_unpacked() {
     libraries=$(dirname "$(find "$root" -name 'libgim-decoder.so.0')")
     PATH="$root/usr/bin:$PATH" LD_LIBRARY_PATH="$libraries" PYTHONPATH="$root/usr/lib/python3/dist-packages" \
         SHARE="$root/usr/share" PKG_CONFIG_PATH="$libraries/pkgconfig" PKG_CONFIG_SYSROOT_DIR= \
-        sh "$HERE/try.sh" "$GIM_ROOT/tests/consumer/main.c"
+        sh "$HERE/try.sh" "$GIM_ROOT/tests/consumer"
 }
 
 say "The packages in an empty Debian"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Uses what the packages install: the program, Python, a C program of its own. Runs where they are installed, without the
-# source. Usage: try.sh CONSUMER.c      Flags for the compiler may come in CFLAGS and LDFLAGS.
+# Uses what the packages install: the program, Python, C and C++ programs. Runs where they are installed, without the source.
+# Usage: try.sh FOLDER      with main.c and main.cpp of tests/consumer
 set -eu
 unset GIM_LIBRARY GIM_PROGRAM
 consumer=$1
@@ -43,10 +43,14 @@ again = gim.open(gim.encode(mesh.vertices, mesh.faces, size=33))
 print(again.info.file_size, "bytes,", again.levels[0].vertex_count, "vertices")
 PYTHON
 
-echo "-- a C program, with the shared and with the static library"
-cc ${CFLAGS-} "$consumer" -o shared $(pkg-config --cflags --libs gim-decoder) ${LDFLAGS-}
+echo "-- C and C++ programs, with the shared and with the static library"
+flags=$(pkg-config --cflags --libs gim-decoder)
+cc "$consumer/main.c" -o shared $flags
 ldd shared | grep -q libgim-decoder.so.0
 ./shared torus.gim
-cc ${CFLAGS-} "$consumer" -o static $(pkg-config --cflags --libs --static gim-decoder | sed s/-lgim-decoder/-l:libgim-decoder.a/) ${LDFLAGS-}
-./static torus.gim >/dev/null
+c++ -std=c++20 "$consumer/main.cpp" -o shared-cpp $flags
+./shared-cpp torus.gim
+flags=$(pkg-config --cflags --libs --static gim-decoder | sed s/-lgim-decoder/-l:libgim-decoder.a/)
+cc "$consumer/main.c" -o static $flags
+./static torus.gim
 echo "-- all of it works"
