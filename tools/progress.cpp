@@ -44,7 +44,10 @@ void ProgressPrinter::update(Stage stage, double fraction) {
 
 Progress ProgressPrinter::callback() {
     if (!visible_) return {};
-    return [this](Stage stage, double fraction) { update(stage, fraction); };
+    return [this](Stage stage, double fraction) {
+        update(stage, fraction);
+        return true;
+    };
 }
 
 }  // namespace gim

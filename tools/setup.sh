@@ -24,6 +24,11 @@ readonly GIM_PYTHON_PACKAGES=(python3 python3-numpy)
 # Of tools/package.sh, besides what the build needs.
 readonly GIM_PACKAGE_PACKAGES=(dpkg-dev debhelper dh-python python3)
 
+# Of `tools/test.sh cross`.
+readonly GIM_CROSS_PACKAGES=(
+    gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
+)
+
 say() { printf '\n== %s\n' "$*"; }
 die() {
     printf 'error: %s\n' "$*" >&2

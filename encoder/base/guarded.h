@@ -7,6 +7,7 @@
 #include <new>
 #include <string>
 
+#include "encoder/base/cancelled.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -17,6 +18,8 @@ auto guarded(uint32_t threads, const Body& body) -> decltype(body()) {
     try {
         tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
         return arena.execute(body);
+    } catch (const Cancelled& cancelled) {
+        return Error{cancelled.stage, "cancelled", true};
     } catch (const std::bad_alloc&) {
         return Error{Stage::kInput, "out of memory; take a smaller mesh or a smaller --size"};
     } catch (const std::exception& e) {

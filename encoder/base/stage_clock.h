@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "encoder/base/cancelled.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -35,12 +36,16 @@ class StageClock {
             known->seconds += seconds;
         }
     }
+    // Throws Cancelled if the caller wants to stop.
     void report(double fraction) const {
-        if (progress_) progress_(stage_, fraction);
+        if (progress_ && !progress_(stage_, fraction)) throw Cancelled{stage_};
     }
-    // Returns a callback for stages that report their own progress.
+    // Returns a callback for stages that report their own progress. They need not look at what it returns.
     Progress progress() const {
-        return [this](Stage, double fraction) { report(fraction); };
+        return [this](Stage, double fraction) {
+            report(fraction);
+            return true;
+        };
     }
     const std::vector<StageTime>& times() const { return times_; }
     double seconds() const {

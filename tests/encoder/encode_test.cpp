@@ -139,6 +139,35 @@ TEST(Encode, LevelsAreMeasuredAndToldInTheHeader) {
     EXPECT_EQ(info.level_rms_error[3], 0.0f);
 }
 
+// Asks to stop at the n-th call, for one n after the other.
+TEST(Encode, ProgressMayStopTheRunAtAnyOfItsCalls) {
+    const TriangleMesh mesh = corpus::torus(24, 12, 1, 0.4);
+    for (const Layout layout : {Layout::kGim, Layout::kMcgim, Layout::kTiles, Layout::kAuto}) {
+        SCOPED_TRACE(static_cast<int>(layout));
+        EncodeOptions options = small_options();
+        options.layout = layout;
+        options.side = 17;
+        options.samples = 600;
+        options.rate = {RateTarget::Kind::kPsnr, 40};
+        size_t calls = 0;
+        ASSERT_TRUE(encode(mesh, options, [&](Stage, double) { return ++calls > 0; }).ok());
+        ASSERT_GT(calls, 10u);
+        for (size_t last = 1; last <= calls; last += 1 + calls / 7) {
+            size_t heard = 0;
+            Stage stage = Stage::kInput;
+            const auto stopped = encode(mesh, options, [&](Stage at, double) {
+                stage = at;
+                return ++heard < last;
+            });
+            ASSERT_FALSE(stopped.ok());
+            EXPECT_TRUE(stopped.error().is_cancelled);
+            EXPECT_EQ(stopped.error().stage, stage);
+            EXPECT_EQ(heard, last);  // it is not asked again
+        }
+    }
+    EXPECT_FALSE(encode({}, {}, [](Stage, double) { return true; }).error().is_cancelled);
+}
+
 constexpr gim_box kEmptyBox = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
 void include(const float* low, const float* high, gim_box* box) {

@@ -25,6 +25,7 @@ std::string_view stage_name(Stage stage);
 struct Error {
     Stage stage = Stage::kInput;
     std::string message;  // one or more lines: which element, what is wrong with it, and what to do
+    bool is_cancelled = false;  // nothing is wrong: the caller's Progress asked to stop
 };
 
 // A value or an Error. Call value() only if ok(), error() only if not.
@@ -99,7 +100,8 @@ struct TriangleMesh {
 };
 
 // Called at the start of each stage and during long stages. `fraction` is 0..1 within the stage. Calls never overlap.
-using Progress = std::function<void(Stage stage, double fraction)>;
+// Returns whether to go on. If it returns false, the encoder stops at once and returns an Error with is_cancelled.
+using Progress = std::function<bool(Stage stage, double fraction)>;
 
 // ---- comparing ------------------------------------------------------------------------------------------------------
 

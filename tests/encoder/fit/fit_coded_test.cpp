@@ -121,6 +121,7 @@ TEST(FitCoded, ProgressRises) {
         .run(units_for(start, 16), CodedFit::Effort::kSearch, [&](Stage stage, double fraction) {
             EXPECT_EQ(stage, Stage::kFit);
             heard.push_back(fraction);
+            return true;
         });
     ASSERT_GE(heard.size(), 3u);
     EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));

@@ -262,6 +262,7 @@ TEST(Fit, ProgressRisesToOne) {
     (void)fit(image_on(reference, 17), reference, {.rounds = 3}, [&](Stage stage, double fraction) {
         EXPECT_EQ(stage, Stage::kFit);
         heard.push_back(fraction);
+        return true;
     });
     ASSERT_GE(heard.size(), 3u);
     EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
