@@ -5,6 +5,7 @@
 #        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
 #        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
 #                                     empty Debian; three minutes, and the build if there is none
+#        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -47,11 +48,18 @@ test_packages() {
     bash "$GIM_ROOT/tests/packages/run.sh" "$GIM_ROOT/build/ci/package" || exit 1
 }
 
+test_cross() {
+    install_packages "${GIM_CROSS_PACKAGES[@]}"
+    say "Vectors on other platforms"
+    bash "$GIM_ROOT/tests/decoder/cross.sh" || die "the decoder fails on another platform"
+}
+
 case "${1:-}" in
     "") ;;
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu | packages]" ;;
+    cross) test_cross && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gpu | packages | cross]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
