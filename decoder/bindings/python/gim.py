@@ -493,10 +493,11 @@ class File:
         """As Image.planes; the same for all images."""
         return Image(self, 0).planes
 
-    def mesh(self, level=0, normals=False, texcoords=False):
-        """Decodes the whole surface, all images in one Mesh. Otherwise as Image.mesh."""
+    def mesh(self, level=0, normals=False, texcoords=False, split_sharp=False):
+        """Decodes the whole surface, all images in one Mesh. Otherwise as Image.mesh. Files of several images have no sharp
+        edges to split."""
         if self._read.image_count == 1:
-            return Image(self, 0).mesh(level, normals, texcoords)
+            return Image(self, 0).mesh(level, normals, texcoords, split_sharp)
         budget, parts = _Budget(self._limits), self._parts(level)
         whole = _empty_mesh(sum(read.vertex_count for _, read in parts), sum(read.triangle_count for _, read in parts),
                             normals, texcoords, budget)
