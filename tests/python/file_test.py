@@ -178,6 +178,14 @@ class Contents(unittest.TestCase):
         self.assertTrue(gim.open(valid("text-zstd")).text.startswith("the same words again and again; "))
         self.assertEqual(gim.open(valid("sphere-33-lossy")).text, "")
 
+    def test_sharp_edges_split(self):
+        file = gim.open(valid("tiles-genus-2-sharp-lossy"))
+        shared, split = file.mesh(0, normals=True), file.mesh(0, normals=True, texcoords=True, split_sharp=True)
+        self.assertGreater(len(split.vertices), len(shared.vertices))
+        self.assertEqual(len(split.texcoords), len(split.vertices))
+        self.assertTrue(np.array_equal(split.vertices[split.faces], shared.vertices[shared.faces]))
+        self.assertFalse(np.array_equal(split.normals[split.faces], shared.normals[shared.faces]))
+
     def test_normals_are_of_unit_length(self):
         mesh = gim.open(valid("sphere-33-lossy")).mesh(0, normals=True)
         lengths = np.linalg.norm(mesh.normals, axis=1)

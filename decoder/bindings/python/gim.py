@@ -366,8 +366,8 @@ class Image:
         return tuple(levels)
 
     def positions(self, level=0, out=None):
-        """Decodes the geometry image: height x width x 3 float32, x y z in object units, NaN where no surface is. Samples
-        of one point of the surface are equal. Values are relative to info.origin if info.is_relative.
+        """Decodes the geometry image: height x width x 3 float32, x y z in object units, NaN where no surface
+        is. Samples of one point of the surface are equal. Values are relative to info.origin if info.is_relative.
         out: an array of that shape to write into; else a new one is made."""
         budget, read = _Budget(self._file._limits), self._level(level)
         positions = _output(out, (read.height, read.width, 3), budget)
@@ -493,10 +493,11 @@ class File:
         """As Image.planes; the same for all images."""
         return Image(self, 0).planes
 
-    def mesh(self, level=0, normals=False, texcoords=False):
-        """Decodes the whole surface, all images in one Mesh. Otherwise as Image.mesh."""
+    def mesh(self, level=0, normals=False, texcoords=False, split_sharp=False):
+        """Decodes the whole surface, all images in one Mesh. Otherwise as Image.mesh. Files of several images have no
+        sharp edges to split."""
         if self._read.image_count == 1:
-            return Image(self, 0).mesh(level, normals, texcoords)
+            return Image(self, 0).mesh(level, normals, texcoords, split_sharp)
         budget, parts = _Budget(self._limits), self._parts(level)
         whole = _empty_mesh(sum(read.vertex_count for _, read in parts), sum(read.triangle_count for _, read in parts),
                             normals, texcoords, budget)
