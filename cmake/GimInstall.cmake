@@ -83,5 +83,8 @@ if(TARGET gim)
     get_target_property(gim_is_left_out gim EXCLUDE_FROM_ALL)
     if(NOT gim_is_left_out)
         install(TARGETS gim RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+        # The page of gim view, if tools/viewer/build.sh has made it.
+        install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/viewer/ DESTINATION ${CMAKE_INSTALL_DATADIR}/gim/viewer
+                COMPONENT tools OPTIONAL)
     endif()
 endif()

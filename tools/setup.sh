@@ -7,7 +7,7 @@ readonly GIM_ROOT
 readonly GIM_BUILD_PACKAGES=(
     g++ cmake ninja-build pkg-config
     libeigen3-dev libopenmesh-dev liblemon-dev libtbb-dev libzstd-dev
-    libcli11-dev nlohmann-json3-dev libopenexr-dev libdraco-dev libmeshoptimizer-dev libstb-dev
+    libcli11-dev nlohmann-json3-dev libopenexr-dev libdraco-dev libmeshoptimizer-dev libstb-dev libcpp-httplib-dev
     libepoxy-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
     libgtest-dev
 )
@@ -24,10 +24,18 @@ readonly GIM_PYTHON_PACKAGES=(python3 python3-numpy)
 # Of tools/package.sh, besides what the build needs.
 readonly GIM_PACKAGE_PACKAGES=(dpkg-dev debhelper dh-python python3)
 
+# Of tools/npm.sh. The compiler and its libraries make WebAssembly; node and npm come from anywhere.
+readonly GIM_NPM_PACKAGES=(
+    clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32 binaryen brotli esbuild
+)
+
 # Of `tools/test.sh cross`.
 readonly GIM_CROSS_PACKAGES=(
     gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
 )
+
+# Of `tools/test.sh web`, besides those of tools/npm.sh.
+readonly GIM_WEB_PACKAGES=(g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev)
 
 say() { printf '\n== %s\n' "$*"; }
 die() {

@@ -3,6 +3,7 @@
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
 # Usage: bash tools/test.sh           all of this
 #        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+#        bash tools/test.sh web       only the npm package, in Node and in Chromium; two minutes
 #        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
 #                                     empty Debian; three minutes, and the build if there is none
 #        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
@@ -54,12 +55,32 @@ test_cross() {
     bash "$GIM_ROOT/tests/decoder/cross.sh" || die "the decoder fails on another platform"
 }
 
+# The npm package. What wants a browser skips, and says so, where there is none.
+test_web() {
+    local name damaged="$GIM_ROOT/build/web/damaged"
+    install_packages "${GIM_WEB_PACKAGES[@]}"
+    for name in node:nodejs npm:npm chromium:chromium; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") || say "Skipped: no ${name%%:*}"
+    done
+    command -v node >/dev/null && command -v npm >/dev/null ||
+        { say "Skipped: the npm package stays untested" && return 0; }
+    configure_and_build web
+    "$GIM_ROOT/build/web/tests/web/write_damaged" "$GIM_ROOT/spec/vectors" "$damaged" || die "write_damaged failed"
+    bash "$GIM_ROOT/tools/npm.sh" || die "building the npm package failed"
+    cd "$GIM_ROOT/tests/web"
+    [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund ||
+        { say "Skipped: npm cannot fetch the bundlers, so the npm package stays untested" && return 0; }
+    say "Tests of the npm package"
+    GIM_CHROMIUM="$(command -v chromium || true)" node --test --test-reporter=spec || die "the tests of the npm package failed"
+}
+
 case "${1:-}" in
     "") ;;
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
     cross) test_cross && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu | packages | cross]" ;;
+    web) (test_web) && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gpu | web | packages | cross]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14

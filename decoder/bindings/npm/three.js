@@ -1,0 +1,5 @@
+// Meshes of .gim files in three.js. three.d.ts describes it.
+export { GIMBudget } from "./three_budget.js";
+export { GIMLoader } from "./three_loader.js";
+export { GIMMesh } from "./three_mesh.js";
+export { planeTexture, texturedMaterial } from "./three_texture.js";
