@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
-# Usage: bash tools/test.sh         all of this
-#        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
-#        bash tools/test.sh web     only the npm package and the viewer, in Node and in Chromium; three minutes
+# Usage: bash tools/test.sh           all of this
+#        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+#        bash tools/test.sh web       only the npm package and the viewer, in Node and in Chromium; three minutes
+#        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
+#                                     empty Debian; three minutes, and the build if there is none
+#        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -37,6 +40,21 @@ test_gpu() {
     (test_in_browser)
 }
 
+test_packages() {
+    install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}"
+    say "Building what the packages hold"
+    configure ci
+    build ci gim gim_encoder gim_decoder gim_decoder_shared
+    bash "$GIM_ROOT/tools/package.sh" --from "$GIM_ROOT/build/ci" || exit 1
+    bash "$GIM_ROOT/tests/packages/run.sh" "$GIM_ROOT/build/ci/package" || exit 1
+}
+
+test_cross() {
+    install_packages "${GIM_CROSS_PACKAGES[@]}"
+    say "Vectors on other platforms"
+    bash "$GIM_ROOT/tests/decoder/cross.sh" || die "the decoder fails on another platform"
+}
+
 # The npm package and the viewer. What wants a browser, nginx or the gim program of another build skips, and says so, where
 # there is none.
 test_web() {
@@ -61,11 +79,13 @@ test_web() {
 case "${1:-}" in
     "") ;;
     gpu) test_gpu && exit 0 ;;
+    packages) test_packages && exit 0 ;;
+    cross) test_cross && exit 0 ;;
     web) (test_web) && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu | web]" ;;
+    *) die "usage: bash tools/test.sh [gpu | web | packages | cross]" ;;
 esac
 
-install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
+install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
 bash "$GIM_ROOT/tools/lint.sh" --format-only
 configure_and_build ci -DGIM_BUILD_BENCHMARKS=ON
 

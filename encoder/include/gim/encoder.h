@@ -24,7 +24,7 @@ std::string_view stage_name(Stage stage);
 
 struct Error {
     Stage stage = Stage::kInput;
-    std::string message;  // one or more lines: which element, what is wrong with it, and what to do
+    std::string message;        // one or more lines: which element, what is wrong with it, and what to do
     bool is_cancelled = false;  // nothing is wrong: the caller's Progress asked to stop
 };
 
