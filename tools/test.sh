@@ -3,7 +3,7 @@
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
 # Usage: bash tools/test.sh           all of this
 #        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
-#        bash tools/test.sh web       only the npm package, in Node and in Chromium; two minutes
+#        bash tools/test.sh web       only the npm package and the viewer, in Node and in Chromium; three minutes
 #        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
 #                                     empty Debian; three minutes, and the build if there is none
 #        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
@@ -55,7 +55,8 @@ test_cross() {
     bash "$GIM_ROOT/tests/decoder/cross.sh" || die "the decoder fails on another platform"
 }
 
-# The npm package. What wants a browser skips, and says so, where there is none.
+# The npm package and the viewer. What wants a browser, nginx or the gim program of another build skips, and says so, where
+# there is none.
 test_web() {
     local name damaged="$GIM_ROOT/build/web/damaged"
     install_packages "${GIM_WEB_PACKAGES[@]}"
@@ -70,6 +71,7 @@ test_web() {
     cd "$GIM_ROOT/tests/web"
     [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund ||
         { say "Skipped: npm cannot fetch the bundlers, so the npm package stays untested" && return 0; }
+    bash "$GIM_ROOT/tools/viewer/build.sh" || die "building the viewer's page failed"
     say "Tests of the npm package"
     GIM_CHROMIUM="$(command -v chromium || true)" node --test --test-reporter=spec || die "the tests of the npm package failed"
 }

@@ -4,10 +4,11 @@ import { after, before, test } from "node:test";
 import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism, tmpdir } from "node:os";
 import { join } from "node:path";
-import { bundle, launch, serve, withoutBrowser } from "./browser.mjs";
-import { ball, encoded, root, withoutProgram } from "./package_under_test.mjs";
+import { launchWithWebGl, makePage } from "./browser.mjs";
+import { ball, encoded, withoutProgram } from "./meshes.mjs";
+import { noBrowser, serve } from "./setup.mjs";
 
-const skip = withoutBrowser || withoutProgram;
+const skip = noBrowser || withoutProgram;
 const count = 100;
 let folder, served, browser;
 
@@ -28,14 +29,13 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), "gim-many-"));
   const files = await encodeAll();
   files.forEach((file, i) => copyFileSync(file, join(folder, `${i}.gim`)));
-  bundle(join(root, "tests/web/pages/many.js"), join(folder, "page.js"));
-  copyFileSync(join(root, "tests/web/pages/blank.html"), join(folder, "index.html"));
+  makePage("many", folder);
   served = await serve({ "": folder });
-  browser = await launch();
+  browser = await launchWithWebGl();
 });
 after(async () => {
   await browser?.close();
-  served?.stop();
+  served?.close();
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 

@@ -3,15 +3,14 @@
 import { copyFileSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { bundle, launch, serve } from "./browser.mjs";
-import { root } from "./package_under_test.mjs";
+import { launchWithWebGl, makePage } from "./browser.mjs";
+import { serve } from "./setup.mjs";
 
 const [file, times = "15"] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "gim-first-"));
 copyFileSync(file, join(folder, "x.gim"));
-copyFileSync(join(root, "tests/web/pages/blank.html"), join(folder, "index.html"));
-bundle(join(root, "tests/web/pages/first.js"), join(folder, "page.js"), ["--minify"]);
-const served = await serve({ "": folder }, { compresses: true }), browser = await launch();
+makePage("first", folder, "--minify");
+const served = await serve({ "": folder }, undefined, true), browser = await launchWithWebGl();
 
 async function open(query) {
   const context = await browser.newContext(), page = await context.newPage();
@@ -42,5 +41,5 @@ for (let i = 0; i < Number(times); ++i) {
 console.log(`first triangle after ${describe(warm)}, finest level after ${describe(finest)}, from navigation ${describe(cold)}`);
 console.log(`${last.triangles} triangles first; ${last.requests} request, ${last.bytes} bytes until the finest level`);
 await browser.close();
-served.stop();
+served.close();
 rmSync(folder, { recursive: true });

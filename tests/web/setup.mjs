@@ -5,6 +5,7 @@ import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
 export const here = fileURLToPath(new URL(".", import.meta.url));
@@ -31,21 +32,32 @@ export function vectorNames() {
 }
 
 export const vector = (name) => readFileSync(join(vectorsFolder, "valid", name));
+export const importEntry = (name) => import(join(packageFolder, `${name}.mjs`));
 
-const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json" };
+const types = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json" };
 
-// Serves folders on this machine. roots: by the first part of a path; "" for the rest. policy: of all answers.
-export async function serve(roots, policy) {
+// Sends a file, or the range of it that is asked for.
+function send(request, response, bytes, headers) {
+  const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
+  if (!range) return response.writeHead(200, headers).end(bytes);
+  const part = bytes.subarray(Number(range[1]), Number(range[2]) + 1);
+  const place = `bytes ${range[1]}-${Number(range[1]) + part.length - 1}/${bytes.length}`;
+  response.writeHead(206, { ...headers, "content-range": place, "content-length": part.length }).end(part);
+}
+
+// Serves folders on this machine. roots: by the first part of a path; "" for the rest. policy: of all answers. compresses:
+// scripts are sent as gzip.
+export async function serve(roots, policy, compresses = false) {
   const server = createServer(async (request, response) => {
-    const path = normalize(new URL(request.url, "http://localhost").pathname).slice(1);
+    const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname)).slice(1) || "index.html";
     const first = path.split("/")[0];
     const file = first in roots ? join(roots[first], path.slice(first.length + 1)) : join(roots[""], path);
     try {
       const bytes = await readFile(file);
       const headers = { "content-type": types[extname(file)] ?? "application/octet-stream" };
       if (policy) headers["content-security-policy"] = policy;
-      response.writeHead(200, headers);
-      response.end(bytes);
+      if (!compresses || extname(file) !== ".js") return send(request, response, bytes, headers);
+      response.writeHead(200, { ...headers, "content-encoding": "gzip" }).end(gzipSync(bytes));
     } catch {
       response.writeHead(404).end();
     }
@@ -54,9 +66,10 @@ export async function serve(roots, policy) {
   return { address: `http://127.0.0.1:${server.address().port}`, close: () => (server.close(), server.closeAllConnections()) };
 }
 
-export function launch() {
+// options: more of the browser's.
+export function launch(...options) {
   const asRoot = process.getuid?.() === 0 ? ["--no-sandbox"] : [];
-  return chromium.launch({ executablePath, headless: true, args: asRoot });
+  return chromium.launch({ executablePath, headless: true, args: [...asRoot, ...options] });
 }
 
 // Opens a page and collects the errors that nobody handles.

@@ -5,14 +5,14 @@ import { mkdirSync, mkdtempSync, rmSync, utimesSync, writeFileSync } from "node:
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { startNginx, withoutNginx } from "./nginx.mjs";
-import { importEntry, vector } from "./package_under_test.mjs";
+import { importEntry, vector } from "./setup.mjs";
 import { longFile } from "./long_file.mjs";
 
 const { GimDecoder } = await importEntry("decoder");
 const { GimSource, GimSourceError } = await importEntry("source");
 await GimDecoder.ready;
 
-const small = vector("bounds"), long = longFile(vector("bounds-two-images"), 60000);
+const small = Uint8Array.from(vector("bounds.gim")), long = longFile(vector("bounds-two-images.gim"), 60000);
 let folder, nginx;
 const put = (name, bytes, time) => {
   const path = join(folder, "files", name);

@@ -3,14 +3,14 @@ import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { createServer } from "node:http";
 import { gzipSync } from "node:zlib";
-import { importEntry, vector } from "./package_under_test.mjs";
+import { importEntry, vector } from "./setup.mjs";
 import { longFile } from "./long_file.mjs";
 
 const { GimDecoder } = await importEntry("decoder");
 const { GimSource } = await importEntry("source");
 await GimDecoder.ready;
 
-const file = vector("bounds-two-images"), long = longFile(file, 60000).bytes;
+const file = Uint8Array.from(vector("bounds-two-images.gim")), long = longFile(file, 60000).bytes;
 const quick = { retryDelay: 1 };
 const servers = [];
 after(() => servers.forEach((server) => (server.closeAllConnections?.(), server.close())));

@@ -1,13 +1,13 @@
 // GIMLoader, GIMMesh and GIMBudget without a picture.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { existsSync, readdirSync, readFileSync, symlinkSync } from "node:fs";
+import { existsSync, symlinkSync } from "node:fs";
 import { join } from "node:path";
-import { importEntry, packageFolder, root, vector } from "./package_under_test.mjs";
+import { here, importEntry, packageFolder, vector, vectorNames } from "./setup.mjs";
 
 // The package finds three as an installed one would.
 const modules = join(packageFolder, "node_modules");
-if (!existsSync(modules)) symlinkSync(join(root, "tests/web/node_modules"), modules);
+if (!existsSync(modules)) symlinkSync(join(here, "node_modules"), modules);
 
 const THREE = await import("three");
 const { GimDecoder } = await importEntry("decoder");
@@ -15,7 +15,7 @@ const { GimSource } = await importEntry("source");
 const { GIMBudget, GIMLoader, GIMMesh, planeTexture } = await importEntry("three");
 await GimDecoder.ready;
 
-const valid = readdirSync(join(root, "spec/vectors/valid")).filter((name) => name.endsWith(".gim"));
+const valid = vectorNames().valid.map(({ name }) => `${name}.gim`);
 const until = (mesh, type) =>
   new Promise((resolve, reject) => {
     mesh.addEventListener(type, resolve);
@@ -30,9 +30,9 @@ const camera = (distance) => {
 test("the loader makes a sound geometry of each vector", async () => {
   const loader = new GIMLoader();
   for (const name of valid) {
-    const bytes = vector(name.slice(0, -4)), before = bytes.slice();
+    const bytes = vector(name), before = Uint8Array.from(bytes);
     const geometry = await loader.parseAsync(bytes);
-    assert.deepEqual(bytes, before, name);
+    assert.deepEqual(Uint8Array.from(bytes), before, name);
     const { index, attributes, userData } = geometry, count = attributes.position.count;
     assert.ok(index.array.every((v) => v < count), name);
     for (const [attribute, width] of [["position", 3], ["normal", 3], ["uv", 2]]) {
@@ -54,14 +54,14 @@ test("the loader makes a sound geometry of each vector", async () => {
 });
 
 test("positions are those of the decoder", async () => {
-  const bytes = vector("bounds"), geometry = await new GIMLoader().setLevel(1).parseAsync(bytes);
+  const bytes = vector("bounds.gim"), geometry = await new GIMLoader().setLevel(1).parseAsync(bytes);
   const mesh = GimDecoder.decodeHardMesh(bytes, { level: 1 });
   assert.deepEqual(geometry.attributes.position.array, mesh.positions);
   assert.deepEqual(Array.from(geometry.index.array), Array.from(mesh.triangles));
 });
 
 test("colours are texels at the samples' texture coordinates", () => {
-  const name = valid.find((file) => file.includes("planes")).slice(0, -4), bytes = vector(name);
+  const name = valid.find((file) => file.includes("planes")), bytes = vector(name);
   const plane = GimDecoder.chunks(bytes).some((chunk) => chunk.name === "COLR") ? "colors" : "normals";
   const texture = planeTexture(bytes, { plane });
   const { width, height, values } = GimDecoder.decodePlane(bytes, { plane });
@@ -79,14 +79,14 @@ test("load() reports to its manager", async () => {
   manager.onLoad = () => seen.push("load");
   manager.onError = (url) => seen.push(`error ${url}`);
   const loader = new GIMLoader(manager);
-  const data = `data:application/octet-stream;base64,${Buffer.from(vector("bounds")).toString("base64")}`;
+  const data = `data:application/octet-stream;base64,${Buffer.from(vector("bounds.gim")).toString("base64")}`;
   await loader.loadAsync(data);
   await assert.rejects(loader.loadAsync("data:text/plain,nothing"), { statusName: "NOT_GIM" });
   assert.deepEqual(seen, [`start ${data}`, "load", "start data:text/plain,nothing", "error data:text/plain,nothing", "load"]);
 });
 
 test("a mesh shows the coarsest level first, then what the camera needs, and lets go of others", async () => {
-  const bytes = vector("bounds"), mesh = new GIMMesh(bytes), shown = [], disposed = [];
+  const bytes = vector("bounds.gim"), mesh = new GIMMesh(bytes), shown = [], disposed = [];
   mesh.addEventListener("levelchange", ({ level }) => {
     shown.push(level);
     mesh.geometry.addEventListener("dispose", () => disposed.push(level));
@@ -108,7 +108,7 @@ test("a mesh shows the coarsest level first, then what the camera needs, and let
 
 test("a mesh that is far away is coarse, and stays so near the limit", async () => {
   // Its level 1 is off by 5352 units. A pixel is 0.83 units in 1000 units of distance.
-  const mesh = new GIMMesh(vector("bounds"));
+  const mesh = new GIMMesh(vector("bounds.gim"));
   await until(mesh, "finished");
   for (const [distance, level] of [[1e7, 1], [7e6, 1], [6e6, 0], [7e6, 0], [1e7, 1]]) {
     mesh.update(camera(distance), 1000);
@@ -126,7 +126,7 @@ test("failures are events, not exceptions", async () => {
   const { error } = await until(mesh, "error");
   assert.equal(error.statusName, "NOT_GIM");
   mesh.update(camera(1), 100);
-  const damaged = vector("bounds").slice();
+  const damaged = Uint8Array.from(vector("bounds.gim"));
   damaged[damaged.length - 3] ^= 1;
   const broken = new GIMMesh(damaged);
   await until(broken, "finished");
@@ -137,7 +137,7 @@ test("failures are events, not exceptions", async () => {
 });
 
 test("meshes of one source", async () => {
-  const source = await GimSource.open(vector("bounds"));
+  const source = await GimSource.open(vector("bounds.gim"));
   const meshes = [new GIMMesh(source, undefined, { level: 0 }), new GIMMesh(source, undefined, { level: 1 })];
   await Promise.all(meshes.map((mesh) => until(mesh, "finished")));
   meshes[0].dispose();
@@ -146,12 +146,12 @@ test("meshes of one source", async () => {
 });
 
 test("a budget is kept, and near meshes come first", async () => {
-  const bytes = vector("bounds");
+  const bytes = vector("bounds.gim");
   const one = new GIMMesh(bytes, undefined, { level: 0 });
   await until(one, "finished");
   const budget = new GIMBudget(8 * one.byteCount);
   const meshes = Array.from({ length: 20 }, (_, i) => {
-    const mesh = new GIMMesh(bytes.slice(), undefined, { budget });
+    const mesh = new GIMMesh(Uint8Array.from(bytes), undefined, { budget });
     mesh.position.z = -5000 * i;
     return mesh;
   });

@@ -5,11 +5,12 @@ import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileS
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { inflateSync } from "node:zlib";
-import { bundle, launch, serve, withoutBrowser } from "./browser.mjs";
+import { launchWithWebGl, makePage } from "./browser.mjs";
 import { comparePictures } from "./compare_pictures.mjs";
-import { ball, encoded, gim, models, root, withoutProgram } from "./package_under_test.mjs";
+import { ball, encoded, gim, models, withoutProgram } from "./meshes.mjs";
+import { noBrowser, serve } from "./setup.mjs";
 
-const skip = withoutBrowser || withoutProgram;
+const skip = noBrowser || withoutProgram;
 const side = 200;
 let folder, served, browser, page;
 before(async () => {
@@ -18,10 +19,9 @@ before(async () => {
   copyFileSync(await encoded("ball", () => ball(32, 64, 1), "--size", "129"), join(folder, "ball.gim"));
   if (existsSync(join(models, "bunny.ply")))
     gim("encode", join(models, "bunny.ply"), join(folder, "bunny.gim"), "--layout", "gim", "--size", "129", "--quiet");
-  bundle(join(root, "tests/web/pages/view.js"), join(folder, "page.js"));
-  copyFileSync(join(root, "tests/web/pages/blank.html"), join(folder, "index.html"));
+  makePage("view", folder);
   served = await serve({ "": folder });
-  browser = await launch();
+  browser = await launchWithWebGl();
   page = await browser.newPage();
   page.on("console", (message) => console.log(`page: ${message.text()}`));
   await page.goto(served.address);
@@ -29,7 +29,7 @@ before(async () => {
 });
 after(async () => {
   await browser?.close();
-  served?.stop();
+  served?.close();
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 

@@ -6,11 +6,12 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { request } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { launch, withoutBrowser } from "./browser.mjs";
-import { ball, encoded, program, root, withoutProgram } from "./package_under_test.mjs";
+import { launchWithWebGl } from "./browser.mjs";
+import { ball, encoded, program, root, withoutProgram } from "./meshes.mjs";
+import { noBrowser } from "./setup.mjs";
 
 const page_ = join(root, "build/viewer");
-const skip = withoutProgram || withoutBrowser || (existsSync(page_) ? false : "no page; tools/viewer/build.sh makes it");
+const skip = withoutProgram || noBrowser || (existsSync(page_) ? false : "no page; tools/viewer/build.sh makes it");
 const text = (page, id) => page.evaluate((name) => document.getElementById(name).textContent, id);
 const number = async (page, id) => Number((await text(page, id)).replace(/[^0-9.]/g, ""));
 
@@ -23,7 +24,7 @@ before(async () => {
   writeFileSync(original, ball(32, 64, 1));
   viewer = spawn(program, ["view", file, "--original", original]);
   address = (await new Promise((resolve) => viewer.stdout.once("data", resolve))).toString().trim();
-  browser = await launch();
+  browser = await launchWithWebGl();
 });
 after(async () => {
   await browser?.close();

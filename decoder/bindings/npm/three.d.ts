@@ -135,3 +135,13 @@ export class GIMBudget {
 export function planeTexture(bytes: GimBytes, options: GimPlaneOptions): DataTexture;
 /** Copies of a material with textures of `userData.textures`; an array if there are several images. */
 export function texturedMaterial(textures: GIMTextures[], material: Material): Material | Material[];
+
+/**
+ * `EXT_gim_geometry` for GLTFLoader: `loader.register((parser) => new GIMGLTFExtension(parser))`. It makes the meshes of the
+ * level that is asked for, by default the finest; geometries have the arrays that the extension's text describes.
+ */
+export class GIMGLTFExtension {
+  /** parser: GLTFParser. level: beyond the coarsest of an image, that one. */
+  constructor(parser: unknown, options?: { level?: number; limits?: GimLimits });
+  readonly name: "EXT_gim_geometry";
+}

@@ -1,25 +1,14 @@
-// The package as it is packed, and files to decode. bash tools/npm.sh builds it.
+// Meshes and the program that encodes them. GIM_PROGRAM: the program; without it that of a build that is there.
 import { execFile, execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, mkdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
+import { here } from "./setup.mjs";
 
-export const root = fileURLToPath(new URL("../..", import.meta.url));
-export const packageFolder = process.env.GIM_PACKAGE ?? join(root, "build/npm/package");
-export const program = process.env.GIM_PROGRAM ?? join(root, "build/release/tools/gim");
+export const root = join(here, "../..");
 export const models = process.env.GIM_MODELS_DIR ?? join(root, "../shared/models");
-
-export const importEntry = (name) => import(join(packageFolder, `${name}.mjs`));
-export const vector = (name) => new Uint8Array(readFileSync(join(root, "spec/vectors/valid", `${name}.gim`)));
-
-// A folder that is gone when the test ends.
-export function temporaryFolder(context) {
-  const folder = mkdtempSync(join(tmpdir(), "gim-web-"));
-  context.after(() => rmSync(folder, { recursive: true, force: true }));
-  return folder;
-}
+const programs = ["release", "ci"].map((preset) => join(root, "build", preset, "tools/gim"));
+export const program = process.env.GIM_PROGRAM ?? programs.find((path) => existsSync(path)) ?? programs[0];
 
 // Returns a ball with waves, as OBJ. seed: of the waves.
 export function ball(rings, sides, seed = 0) {
@@ -42,9 +31,9 @@ export function ball(rings, sides, seed = 0) {
 
 // Runs the gim program.
 export const gim = (...options) => execFileSync(program, options, { encoding: "utf8" });
-// Returns the path of NAME.gim in build/web, and makes it from a mesh if it is not there. Meshes take seconds to encode.
+// Returns the path of NAME.gim in build/web/meshes, and makes it from a mesh if it is not there. Meshes take seconds to encode.
 export async function encoded(name, makeMesh, ...options) {
-  const folder = join(root, "build/web"), file = join(folder, `${name}.gim`);
+  const folder = join(root, "build/web/meshes"), file = join(folder, `${name}.gim`);
   if (existsSync(file) && statSync(file).mtimeMs > statSync(program).mtimeMs) return file;
   mkdirSync(folder, { recursive: true });
   const mesh = join(folder, `${name}.obj`);
