@@ -2,6 +2,7 @@
 # Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
 # Usage: bash tools/test.sh         all of this
+#        bash tools/test.sh gltf    only glTF files, with the Khronos validator if npm can fetch it
 #        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -36,10 +37,24 @@ test_gpu() {
     (test_in_browser)
 }
 
+# The validator is a package of npm. Its tests skip, and say so, where it is not there.
+test_gltf() {
+    local name
+    for name in node:nodejs npm:npm; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") ||
+            say "No ${name%%:*}, so the validator's test will skip"
+    done
+    (cd "$GIM_ROOT/tests/gltf" && npm ci --no-audit --no-fund) || say "npm cannot fetch the validator, so its test will skip"
+    install_packages "${GIM_BUILD_PACKAGES[@]}"
+    configure_and_build ci
+    "$GIM_ROOT/build/ci/tests/encode_glb_test" || die "encode_glb_test failed"
+}
+
 case "${1:-}" in
     "") ;;
+    gltf) test_gltf && exit 0 ;;
     gpu) test_gpu && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu]" ;;
+    *) die "usage: bash tools/test.sh [gltf | gpu]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
