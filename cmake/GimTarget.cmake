@@ -18,6 +18,11 @@ function(gim_target target)
     endif()
 endfunction()
 
+# Objects of this target may end up in a shared library, which must not export them.
+function(gim_hide_symbols target)
+    set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
 # Compiles these headers once for all files of the target. Each file still includes what it needs;
 # -DGIM_PRECOMPILE_HEADERS=OFF tells if one does not.
 function(gim_precompile target)

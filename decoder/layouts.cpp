@@ -9,12 +9,12 @@ namespace {
 
 // In the order of FileLayout.
 constexpr LevelReader kReaders[] = {
-    {square_level_info, decode_square_mesh, decode_square_grid, read_square_seams, square_domain_shape,
-     read_square_glue, open_square_plane, square_plane_scratch_size, decode_square_plane},
-    {chart_level_info, decode_chart_mesh, decode_chart_grid, read_chart_seams, nullptr, nullptr, open_chart_plane,
+    {square_level_info, decode_square_mesh, decode_square_grid, read_square_seams, open_square_plane,
+     square_plane_scratch_size, decode_square_plane},
+    {chart_level_info, decode_chart_mesh, decode_chart_grid, read_chart_seams, open_chart_plane,
      chart_plane_scratch_size, decode_chart_plane},
-    {tile_level_info, decode_tile_mesh, decode_tile_grid, read_tile_seams, tile_domain_shape, read_tile_glue,
-     open_tile_plane, tile_plane_scratch_size, decode_tile_plane},
+    {tile_level_info, decode_tile_mesh, decode_tile_grid, read_tile_seams, open_tile_plane, tile_plane_scratch_size,
+     decode_tile_plane},
 };
 static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1 &&
               static_cast<size_t>(FileLayout::kTiles) == 2);

@@ -1,24 +1,14 @@
-// Unpacks the META chunk into the caller's memory. The zstd context is in the caller's scratch: nothing is allocated.
-#define ZSTD_STATIC_LINKING_ONLY  // for contexts in our own memory
-#include <zstd.h>
-
+// Reads the META chunk into the caller's memory.
 #include <algorithm>
 #include <cstdint>
 
 #include "decoder/reopen.h"
+#include "decoder/unpack_text.h"
 #include "gim/decoder.h"
 
 using namespace gim;
 
 namespace {
-
-Status unpack(std::span<const uint8_t> payload, char* text, size_t size, void* scratch, size_t scratch_size) {
-    if (!scratch || reinterpret_cast<uintptr_t>(scratch) % 16 != 0) return Status::kBadArgument;
-    ZSTD_DCtx* context = ZSTD_initStaticDCtx(scratch, scratch_size);
-    if (!context) return Status::kScratchTooSmall;
-    const size_t unpacked = ZSTD_decompressDCtx(context, text, size, payload.data(), payload.size());
-    return !ZSTD_isError(unpacked) && unpacked == size ? Status::kOk : Status::kMalformed;
-}
 
 Status read_text(const gim_info* info, const void* bytes, size_t size, char* text, size_t capacity, uint64_t* text_size,
                  void* scratch, size_t scratch_size) {
@@ -34,14 +24,14 @@ Status read_text(const gim_info* info, const void* bytes, size_t size, char* tex
     std::span<const uint8_t> payload;
     if (Status s = read_payload({static_cast<const uint8_t*>(bytes), size}, chunk, offset, &payload); s != Status::kOk)
         return s;
-    if (chunk.zstd) return unpack(payload, text, static_cast<size_t>(chunk.raw_size), scratch, scratch_size);
+    if (chunk.zstd) return unpack_text(payload, text, static_cast<size_t>(chunk.raw_size), scratch, scratch_size);
     std::copy(payload.begin(), payload.end(), text);
     return Status::kOk;
 }
 
 }  // namespace
 
-size_t gim_text_scratch_size(void) { return ZSTD_estimateDCtxSize(); }
+size_t gim_text_scratch_size(void) { return unpack_scratch_size(); }
 
 gim_status gim_read_text(const gim_info* info, const void* bytes, size_t size, char* text, size_t capacity,
                          uint64_t* text_size, void* scratch, size_t scratch_size) {

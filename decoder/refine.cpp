@@ -7,6 +7,7 @@
 #include <new>
 #include <span>
 
+#include "decoder/domains.h"
 #include "decoder/layout/level_reader.h"
 #include "decoder/open_domain.h"
 #include "decoder/refine/details.h"
@@ -50,13 +51,19 @@ uint64_t whole_scratch(const DomainShape& shape, uint64_t of_glue) {
     return std::max<uint64_t>(of_glue, uint64_t{edge_slots(shape)} * sizeof(uint64_t));
 }
 
-Status read_shape(const LevelReader& reader, const LevelRequest& request, DomainShape* shape, uint64_t* scratch) {
-    if (!reader.domain_shape) return Status::kBadArgument;
-    if (Status s = reader.domain_shape(request, shape, scratch); s != Status::kOk) return s;
+Status read_shape(const LevelRequest& request, DomainShape* shape, uint64_t* scratch) {
+    const DomainReader* reader = domain_reader_of(request.header.layout);
+    if (!reader) return Status::kBadArgument;
+    if (Status s = reader->shape(request, shape, scratch); s != Status::kOk) return s;
     // Numbers of half-edges of base triangles must fit.
     if (shape->tiles > UINT32_MAX / 8) return Status::kLimitExceeded;
     *scratch = whole_scratch(*shape, *scratch);
     return Status::kOk;
+}
+
+// Once read_shape has found the layout to have tiles.
+Status read_glue(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue) {
+    return domain_reader_of(request.header.layout)->read_glue(request, shape, scratch, glue);
 }
 
 gim_domain_info describe(const DomainShape& shape, uint64_t scratch) {
@@ -93,8 +100,8 @@ Status read_detailed(const LevelReader& reader, const LevelRequest& request, uin
     while (uint64_t{level.width - 1} << d->finer < d->plane.width - 1) ++d->finer;
     if (uint64_t{level.width - 1} << d->finer != d->plane.width - 1) return Status::kNoSuchLevel;
     uint64_t of_coarse = 0, of_fine = 0;
-    if (Status s = read_shape(reader, request, &d->coarse, &of_coarse); s != Status::kOk) return s;
-    if (Status s = read_shape(reader, d->finer_than(request), &d->shape, &of_fine); s != Status::kOk) return s;
+    if (Status s = read_shape(request, &d->coarse, &of_coarse); s != Status::kOk) return s;
+    if (Status s = read_shape(d->finer_than(request), &d->shape, &of_fine); s != Status::kOk) return s;
     Arena arena(nullptr);
     (void)lay_out_glue(d->coarse, &arena);
     (void)arena.take<uint8_t>(0);
@@ -131,10 +138,10 @@ bool is_sound(const gim_rule& rule) {
 gim_status gim_read_domain_info(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,
                                 gim_domain_info* out) {
     if (!out) return GIM_BAD_ARGUMENT;
-    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader&, const LevelRequest& request) {
         DomainShape shape;
         uint64_t scratch = 0;
-        if (Status s = read_shape(reader, request, &shape, &scratch); s != Status::kOk) return s;
+        if (Status s = read_shape(request, &shape, &scratch); s != Status::kOk) return s;
         *out = describe(shape, scratch);
         return Status::kOk;
     });
@@ -144,15 +151,15 @@ gim_status gim_open_domain(const gim_info* info, const void* bytes, size_t size,
                            const float* positions, void* memory, size_t memory_size, void* scratch, size_t scratch_size,
                            const gim_domain** domain) {
     if (!positions || !domain || !is_aligned(memory)) return GIM_BAD_ARGUMENT;
-    return with_level(info, bytes, size, image, level, [&](const LevelReader& reader, const LevelRequest& request) {
+    return with_level(info, bytes, size, image, level, [&](const LevelReader&, const LevelRequest& request) {
         DomainShape shape;
         uint64_t of_scratch = 0;
-        if (Status s = read_shape(reader, request, &shape, &of_scratch); s != Status::kOk) return s;
+        if (Status s = read_shape(request, &shape, &of_scratch); s != Status::kOk) return s;
         if (Status s = check_scratch({scratch, scratch_size}, of_scratch); s != Status::kOk) return s;
         if (memory_size < domain_size(shape)) return Status::kScratchTooSmall;
         Arena arena(memory);
         DomainMemory parts(shape, &arena);
-        if (Status s = reader.read_glue(request, shape, scratch, &parts.glue); s != Status::kOk) return s;
+        if (Status s = read_glue(request, shape, scratch, &parts.glue); s != Status::kOk) return s;
         *domain = finish(shape, positions, static_cast<uint64_t*>(scratch), &parts);
         return Status::kOk;
     });
@@ -183,8 +190,8 @@ gim_status gim_open_detailed_domain(const gim_info* info, const void* bytes, siz
         DomainMemory parts(d.shape, &of_memory);
         TileGlue coarse_glue = lay_out_glue(d.coarse, &of_scratch);
         uint8_t* rest = of_scratch.take<uint8_t>(0);
-        if (Status s = reader.read_glue(request, d.coarse, rest, &coarse_glue); s != Status::kOk) return s;
-        if (Status s = reader.read_glue(d.finer_than(request), d.shape, rest, &parts.glue); s != Status::kOk) return s;
+        if (Status s = read_glue(request, d.coarse, rest, &coarse_glue); s != Status::kOk) return s;
+        if (Status s = read_glue(d.finer_than(request), d.shape, rest, &parts.glue); s != Status::kOk) return s;
         displace(QuadDomain(d.coarse, coarse_glue, nullptr), QuadDomain(d.shape, parts.glue, nullptr),
                  {displacements, d.plane.width, d.finer}, positions, detailed);
         *domain = finish(d.shape, detailed, reinterpret_cast<uint64_t*>(rest), &parts);

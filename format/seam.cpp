@@ -43,7 +43,8 @@ bool has_double_unit_path(const SeamTable& table) {
         const auto [low, high] = std::minmax(table.node_class[i], table.node_class[next_path(table, i)]);
         keys[count++] = uint32_t{low} << 16 | high;
     }
-    std::sort(keys.begin(), keys.begin() + count);
+    std::make_heap(keys.begin(), keys.begin() + count);  // a small program: this is rare
+    std::sort_heap(keys.begin(), keys.begin() + count);
     return std::adjacent_find(keys.begin(), keys.begin() + count) != keys.begin() + count;
 }
 
@@ -123,10 +124,10 @@ bool level_is_closed(const SeamTable& table, uint32_t side) {
     // Some edges from the rim to an interior sample are always there. A corner and the ring samples beside it lead to
     // the one interior sample near it. At side 3 the whole ring leads to the centre.
     if (side == 3) {
-        std::array<uint64_t, 8> all;
-        for (uint32_t k = 0; k < 8; ++k) all[k] = identity(k);
-        std::sort(all.begin(), all.end());
-        return std::adjacent_find(all.begin(), all.end()) == all.end();
+        for (uint32_t k = 0; k < 8; ++k)
+            for (uint32_t other = 0; other < k; ++other)
+                if (identity(k) == identity(other)) return false;
+        return true;
     }
     for (uint32_t corner = 0; corner < ring; corner += side - 1) {
         if (identity((corner + ring - 1) % ring) == identity(corner + 1)) return false;

@@ -38,7 +38,7 @@ class TileFrames {
             if (column == 0) return find_on_side(4 * tile + 3, h - 1 - row, lanes, i);
             if (column == h) return find_on_side(4 * tile + 1, row, lanes, i);
         }
-        const ptrdiff_t one = 3, line = 3 * ptrdiff_t{h + 1};
+        const ptrdiff_t one = 3, line = 3 * static_cast<ptrdiff_t>(h + 1);
         const float* here = tile_of_samples(tile) + row * line + column * one;
         auto &u = lanes.u, &v = lanes.v;
         for (size_t k = 0; k < 3; ++k, ++here) {

@@ -51,9 +51,9 @@ class TilePlanes {
     std::array<TileSide, 4> sides;
 
     // Offsets of the planes. The small image is the first.
-    ptrdiff_t horizontal() const { return 3 * ptrdiff_t{h + 1} * (h + 1); }
-    ptrdiff_t vertical() const { return horizontal() + 3 * ptrdiff_t{h + 1} * h; }
-    ptrdiff_t diagonal() const { return vertical() + 3 * ptrdiff_t{h + 1} * h; }
+    ptrdiff_t horizontal() const { return 3 * static_cast<ptrdiff_t>(h + 1) * (h + 1); }
+    ptrdiff_t vertical() const { return horizontal() + 3 * static_cast<ptrdiff_t>(h + 1) * h; }
+    ptrdiff_t diagonal() const { return vertical() + 3 * static_cast<ptrdiff_t>(h + 1) * h; }
     // Numbers of a tile, and of its details alone.
     size_t size() const { return 3 * size_t{2 * h + 1} * (2 * h + 1); }
     size_t details() const { return size() - static_cast<size_t>(horizontal()); }

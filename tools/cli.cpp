@@ -51,9 +51,9 @@ int run_gim(int argc, const char* const* argv) {
         "Exit status: 0 done, 1 the work failed, 2 wrong usage. Results go to stdout, messages and progress to "
         "stderr.\n"
         "A command that fails leaves no file behind and changes none.");
-    const std::array<Subcommand, 8> subcommands = {add_encode(app), add_decode(app),     add_info(app),
-                                                   add_cut(app),    add_compare(app),    add_render(app),
-                                                   add_emboss(app), add_bench_scene(app)};
+    const std::array<Subcommand, 9> subcommands = {add_encode(app), add_decode(app),      add_info(app),
+                                                   add_cut(app),    add_compare(app),     add_render(app),
+                                                   add_emboss(app), add_bench_scene(app), add_view(app)};
     int exit_status = 0;
     try {
         app.parse(argc, argv);

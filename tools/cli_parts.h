@@ -21,6 +21,7 @@ Subcommand add_compare(CLI::App& app);
 Subcommand add_emboss(CLI::App& app);
 Subcommand add_bench_scene(CLI::App& app);
 Subcommand add_render(CLI::App& app);
+Subcommand add_view(CLI::App& app);
 
 // Accepts 2^j + 1, from least to most.
 CLI::Validator side_validator(uint32_t least, uint32_t most);

@@ -94,6 +94,14 @@ struct RenderCommand {
 };
 int run_render(const RenderCommand& command);
 
+struct ViewCommand {
+    std::string input;     // .gim file; empty: none
+    std::string original;  // mesh; empty: none
+    std::string page;      // folder; empty: where it is installed or built
+    uint16_t port = 0;     // 0: any
+};
+int run_view(const ViewCommand& command);
+
 // Prints "gim: FILE: STAGE: message" on stderr; returns 1.
 int report_error(const std::string& file, const Error& error);
 // Prints "gim: FILE: warning: text" on stderr for each.

@@ -15,6 +15,7 @@ declare -A may_include=(
     [decoder/tiles]="format decoder/pyramid decoder/layout"
     [decoder/refine]="format decoder/pyramid decoder/layout"
     [decoder]="format decoder/pyramid decoder/layout decoder/squares decoder/charts decoder/tiles decoder/refine"
+    [decoder/bindings/wasm]="format decoder"
     [encoder/base]=""
     [encoder/surface]="format encoder/base"
     [encoder/code]="format encoder/base encoder/surface"

@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
 # Runs what a change must pass: formatting, a build without warnings, the sanitizers over format and decoder, a short
 # fuzzing run, all tests. Installs missing packages. Takes about ten minutes on two cores, less with ccache.
-# Usage: bash tools/test.sh         all of this
-#        bash tools/test.sh gltf    only glTF files, with the Khronos validator if npm can fetch it
-#        bash tools/test.sh gpu     only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+# Usage: bash tools/test.sh           all of this
+#        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
+#        bash tools/test.sh web       only the npm package and the viewer, in Node and in Chromium; three minutes
+#        bash tools/test.sh gltf      only glTF files, with the Khronos validator if npm can fetch it
+#        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
+#                                     empty Debian; three minutes, and the build if there is none
+#        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -50,14 +54,53 @@ test_gltf() {
     "$GIM_ROOT/build/ci/tests/encode_glb_test" || die "encode_glb_test failed"
 }
 
+test_packages() {
+    install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}"
+    say "Building what the packages hold"
+    configure ci
+    build ci gim gim_encoder gim_decoder gim_decoder_shared
+    bash "$GIM_ROOT/tools/package.sh" --from "$GIM_ROOT/build/ci" || exit 1
+    bash "$GIM_ROOT/tests/packages/run.sh" "$GIM_ROOT/build/ci/package" || exit 1
+}
+
+test_cross() {
+    install_packages "${GIM_CROSS_PACKAGES[@]}"
+    say "Vectors on other platforms"
+    bash "$GIM_ROOT/tests/decoder/cross.sh" || die "the decoder fails on another platform"
+}
+
+# The npm package and the viewer. What wants a browser, nginx or the gim program of another build skips, and says so, where
+# there is none.
+test_web() {
+    local name damaged="$GIM_ROOT/build/web/damaged"
+    install_packages "${GIM_WEB_PACKAGES[@]}"
+    for name in node:nodejs npm:npm chromium:chromium; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") || say "Skipped: no ${name%%:*}"
+    done
+    command -v node >/dev/null && command -v npm >/dev/null ||
+        { say "Skipped: the npm package stays untested" && return 0; }
+    configure_and_build web
+    "$GIM_ROOT/build/web/tests/web/write_damaged" "$GIM_ROOT/spec/vectors" "$damaged" || die "write_damaged failed"
+    bash "$GIM_ROOT/tools/npm.sh" || die "building the npm package failed"
+    cd "$GIM_ROOT/tests/web"
+    [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund ||
+        { say "Skipped: npm cannot fetch the bundlers, so the npm package stays untested" && return 0; }
+    bash "$GIM_ROOT/tools/viewer/build.sh" || die "building the viewer's page failed"
+    say "Tests of the npm package"
+    GIM_CHROMIUM="$(command -v chromium || true)" node --test --test-reporter=spec || die "the tests of the npm package failed"
+}
+
 case "${1:-}" in
     "") ;;
     gltf) test_gltf && exit 0 ;;
     gpu) test_gpu && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gltf | gpu]" ;;
+    packages) test_packages && exit 0 ;;
+    cross) test_cross && exit 0 ;;
+    web) (test_web) && exit 0 ;;
+    *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross]" ;;
 esac
 
-install_packages "${GIM_BUILD_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
+install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14
 bash "$GIM_ROOT/tools/lint.sh" --format-only
 configure_and_build ci -DGIM_BUILD_BENCHMARKS=ON
 

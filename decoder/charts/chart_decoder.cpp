@@ -78,7 +78,6 @@ PyramidWorkspace planes_of(const ChartWorkspace& ws, size_t first, size_t low_fi
 }
 
 // Decodes the steps of a chart that one stream holds, from its base or from the level before.
-template <class Wavelet>
 bool decode_chart(const Header& header, const ChartLevelShape& shape, const DecodedChart& chart,
                   const PyramidWorkspace& planes, RangeDecoder& decoder, uint32_t stream_level) {
     const PyramidShape pyramid = {chart.box.columns,
@@ -89,12 +88,11 @@ bool decode_chart(const Header& header, const ChartLevelShape& shape, const Deco
                                   1 << (header.bits - 1),
                                   true};
     const uint32_t done = stream_level + 1 == header.level_count ? 0 : chart.box.steps() - stream_level - 1;
-    PyramidDecoder<Wavelet> image(pyramid, planes, done);
-    BandCoder<RangeDecoder> coder(&decoder, planes.models, planes.band_work);
+    PyramidDecoder image(header.coding == Coding::kLossless, pyramid, planes, done);
+    BandDecoder coder(&decoder, planes.models, planes.band_work);
     return image.advance(coder, stream_level);
 }
 
-template <class Wavelet>
 Status decode_levels(const Header& header, std::span<const uint8_t> file, const ChartLevelShape& shape,
                      const ChartWorkspace& ws) {
     new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
@@ -111,7 +109,7 @@ Status decode_levels(const Header& header, std::span<const uint8_t> file, const 
         for (uint32_t c = 0; c < shape.chart_count; ++c) {
             const DecodedChart& chart = ws.charts[c];
             const PyramidWorkspace planes = planes_of(ws, chart.first, low_first);
-            if (!decode_chart<Wavelet>(header, shape, chart, planes, decoder, l)) return Status::kMalformed;
+            if (!decode_chart(header, shape, chart, planes, decoder, l)) return Status::kMalformed;
             low_first += size_t{low_count(chart.columns)} * low_count(chart.rows);
         }
         if (!decoder.intact()) return Status::kMalformed;
@@ -200,15 +198,10 @@ Status decode_charts(const Header& header, std::span<const uint8_t> file, const 
             new (&ws.paths[p]) BorderPath{ws.mates[p], 0, 0, c};
         }
     }
-    const bool lossless = header.coding == Coding::kLossless;
-    if (Status s = lossless ? decode_levels<Reversible53>(header, file, shape, ws)
-                            : decode_levels<Irreversible97>(header, file, shape, ws);
-        s != Status::kOk)
-        return s;
+    if (Status s = decode_levels(header, file, shape, ws); s != Status::kOk) return s;
     if (number_points(shape, ws) != shape.size.vertices) return Status::kMalformed;
     const size_t count = static_cast<size_t>(shape.samples) * 3;
-    float* units =
-        lossless ? to_units<int32_t>(ws.pyramid.images[0], count) : to_units<float>(ws.pyramid.images[0], count);
+    float* units = to_units(header.coding == Coding::kLossless, ws.pyramid.images[0], count);
     close_charts(shape, ws, units);
     *samples = units;
     return Status::kOk;

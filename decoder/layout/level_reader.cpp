@@ -14,10 +14,10 @@ Status read_plane_chunk(const LevelRequest& request, const Chunk& chunk, uint64_
 
 Status decode_pyramid_plane(const PlaneLevel& plane, const PyramidWorkspace& ws, float* values) {
     new (ws.models) BandModels(CoefficientKind::kPlanes);
-    PyramidDecoder<Irreversible97> decoder(plane.shape, ws);
+    PyramidDecoder decoder(false, plane.shape, ws);
     if (Status s = decode_stream(decoder, ws, plane.chunk.stream, plane.shape.level); s != Status::kOk) return s;
     const size_t count = size_t{plane.width} * plane.height * 3;
-    std::copy_n(to_units<float>(ws.images[0], count), count, values);
+    std::copy_n(to_units(false, ws.images[0], count), count, values);
     return Status::kOk;
 }
 

@@ -1,4 +1,5 @@
-// What the decoder asks of a layout: one struct of functions for each. layouts.h has the table.
+// What the decoder asks of a layout: one struct of functions for each. layouts.h has the table, domains.h that of layouts
+// that can be refined.
 #pragma once
 
 #include <array>
@@ -44,13 +45,6 @@ struct SurfaceArrays {
     uint32_t* hard_vertices = nullptr;
 };
 
-// Turns `count` triples from units into object space.
-inline void to_object(const std::array<float, 3> origin, float step, const float* units, float* __restrict positions,
-                      size_t count = 1) {
-    for (size_t i = 0; i < count; ++i)
-        for (size_t k = 0; k < 3; ++k) positions[3 * i + k] = origin[k] + step * units[3 * i + k];
-}
-
 struct LevelReader {
     Status (*level_info)(const LevelRequest& request, gim_level_info* info);
     Status (*mesh)(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch);
@@ -58,18 +52,20 @@ struct LevelReader {
     // class_of, path_count: as in gim_read_seams.
     Status (*seams)(const LevelRequest& request, uint32_t* class_of, uint32_t* path_count);
 
-    // The tiles of a level, to be refined (gim/refine.h). Null if the layout has none.
-    // scratch_size: of read_glue.
-    Status (*domain_shape)(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size);
-    // Fills all arrays of the glue but is_anti. shape: of domain_shape. scratch is large enough.
-    Status (*read_glue)(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue);
-
     // Opens a level of the plane that `chunk` at `offset` holds. request.level: of the plane.
     Status (*open_plane)(const LevelRequest& request, const Chunk& chunk, uint64_t offset, PlaneLevel* plane);
     // Bytes of scratch that decode_plane needs.
     uint64_t (*plane_scratch_size)(const LevelRequest& request, const PlaneLevel& plane);
     // Writes plane.width * plane.height triples as they are stored. Those of one surface point are equal.
     Status (*decode_plane)(const LevelRequest& request, const PlaneLevel& plane, void* scratch, float* values);
+};
+
+// The tiles of a level, to be refined (gim/refine.h). Not every layout has some.
+struct DomainReader {
+    // scratch_size: of read_glue.
+    Status (*shape)(const LevelRequest& request, DomainShape* shape, uint64_t* scratch_size);
+    // Fills all arrays of the glue but is_anti. scratch is large enough.
+    Status (*read_glue)(const LevelRequest& request, const DomainShape& shape, void* scratch, TileGlue* glue);
 };
 
 // Checks the chunk of a plane and fills plane->chunk and plane->prefix.

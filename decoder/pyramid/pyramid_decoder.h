@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "decoder/pyramid/arena.h"
-#include "decoder/pyramid/range_decoder.h"
+#include "decoder/pyramid/band_decoder.h"
 #include "decoder/pyramid/synthesis.h"
 #include "format/status.h"
 
@@ -40,8 +40,6 @@ struct PyramidShape {
     const SeamTable* seams = nullptr;  // only of a square whose mates share details
 };
 
-inline constexpr float kLargestUnit = 0x1p22f;  // encoders stay well below; keeps all later arithmetic finite
-
 // Places the three bands of one image in one array.
 inline LevelBands bands_in(int32_t* memory, uint32_t columns, uint32_t rows) {
     LevelBands bands;
@@ -52,17 +50,14 @@ inline LevelBands bands_in(int32_t* memory, uint32_t columns, uint32_t rows) {
 }
 
 // Decodes from the base up to the requested level.
-template <class Wavelet>
 class PyramidDecoder {
   public:
-    using Sample = typename Wavelet::Sample;
-
-    // done: steps that an earlier decoder of this shape has done in this memory.
-    PyramidDecoder(const PyramidShape& shape, const PyramidWorkspace& ws, uint32_t done = 0)
-        : shape_(shape), ws_(ws), done_(done), started_(done > 0) {}
+    // integers: 5/3, else 9/7. done: steps that an earlier decoder of this shape has done in this memory.
+    PyramidDecoder(bool integers, const PyramidShape& shape, const PyramidWorkspace& ws, uint32_t done = 0)
+        : lifting_(integers), shape_(shape), ws_(ws), done_(done), started_(done > 0) {}
 
     // Decodes up to a level (0: full resolution), from where the last call stopped. Returns false on invalid values.
-    bool advance(BandCoder<RangeDecoder>& coder, uint32_t to_level) {
+    bool advance(BandDecoder& coder, uint32_t to_level) {
         if (!started_ && !decode_base(coder)) return false;
         started_ = true;
         while (done_ < shape_.steps - to_level) {
@@ -78,9 +73,9 @@ class PyramidDecoder {
 
     // Images and bands alternate between two slots. Those of the requested level are in slot 0.
     uint32_t slot(uint32_t step) const { return (shape_.steps - shape_.level - step) & 1; }
-    Sample* image(uint32_t step) const { return static_cast<Sample*>(ws_.images[slot(step)]); }
+    Number* image(uint32_t step) const { return static_cast<Number*>(ws_.images[slot(step)]); }
 
-    bool decode_base(BandCoder<RangeDecoder>& coder) {
+    bool decode_base(BandDecoder& coder) {
         const Band base = {ws_.bands[slot(0)], rows_at(0), columns_at(0)};
         if (!coder.code_base(base)) return false;
         if (shape_.chained_base) {
@@ -89,20 +84,18 @@ class PyramidDecoder {
                                                       static_cast<uint32_t>(base.values[i - 3]));
             }
         }
-        Sample* values = image(0);
         const float step = low_band_step(shape_.details.quantizer, shape_.steps);
-        for (size_t i = 0; i < base.count(); ++i) {
-            if constexpr (Wavelet::kSteps == 2) {
-                values[i] =
-                    static_cast<int32_t>(static_cast<uint32_t>(base.values[i]) + static_cast<uint32_t>(shape_.middle));
-            } else {
-                values[i] = static_cast<float>(base.values[i]) * step + static_cast<float>(shape_.middle);
-            }
-        }
+        for (size_t i = 0; i < base.count(); ++i) image(0)[i] = base_number(base.values[i], step);
         return true;
     }
 
-    bool decode_step(BandCoder<RangeDecoder>& coder, uint32_t step) {
+    // A number of the base image.
+    Number base_number(int32_t value, float step) const {
+        if (lifting_.integers()) return static_cast<uint32_t>(value) + static_cast<uint32_t>(shape_.middle);
+        return std::bit_cast<Number>(static_cast<float>(value) * step + static_cast<float>(shape_.middle));
+    }
+
+    bool decode_step(BandDecoder& coder, uint32_t step) {
         const uint32_t columns = columns_at(step), rows = rows_at(step);
         const LevelBands bands = bands_in(ws_.bands[slot(step)], columns, rows);
         LevelBands parents;
@@ -115,12 +108,13 @@ class PyramidDecoder {
         }
         if (!coder.code_level(bands, has_parents ? &parents : nullptr, rim)) return false;
         DetailSteps steps;
-        if constexpr (Wavelet::kSteps > 2) steps = shape_.details.steps_at(shape_.steps - step + 1);
-        synthesize<Wavelet>(columns, rows, image(step - 1), bands, steps, static_cast<Sample*>(ws_.synthesis),
-                            image(step), rim);
+        if (!lifting_.integers()) steps = shape_.details.steps_at(shape_.steps - step + 1);
+        synthesize(lifting_, columns, rows, image(step - 1), bands, steps, static_cast<Number*>(ws_.synthesis),
+                   image(step), rim);
         return true;
     }
 
+    RowLifting lifting_;
     PyramidShape shape_;
     const PyramidWorkspace& ws_;
     uint32_t done_;  // steps that are done
@@ -128,44 +122,11 @@ class PyramidDecoder {
 };
 
 // Decodes one stream of an image that has streams of its own.
-template <class Wavelet>
-Status decode_stream(PyramidDecoder<Wavelet>& decoder, const PyramidWorkspace& ws, std::span<const uint8_t> stream,
-                     uint32_t to_level) {
+inline Status decode_stream(PyramidDecoder& decoder, const PyramidWorkspace& ws, std::span<const uint8_t> stream,
+                            uint32_t to_level) {
     RangeDecoder coder(stream);
-    BandCoder<RangeDecoder> band_coder(&coder, ws.models, ws.band_work);
+    BandDecoder band_coder(&coder, ws.models, ws.band_work);
     return decoder.advance(band_coder, to_level) && coder.intact() ? Status::kOk : Status::kMalformed;
-}
-
-// Clamps values to +-kLargestUnit, and a NaN to the least. Values are hardly ever out of bounds, so it looks first.
-inline void bound_units(float* values, size_t count) {
-    constexpr auto kLargest = std::bit_cast<int32_t>(kLargestUnit);
-    int32_t beyond = 0;  // negative: some magnitude, read as an integer, is larger
-    for (size_t i = 0; i < count; ++i) beyond |= kLargest - (std::bit_cast<int32_t>(values[i]) & INT32_MAX);
-    if (beyond >= 0) return;
-    for (size_t i = 0; i < count; ++i) {
-        const float bounded = values[i] > -kLargestUnit ? values[i] : -kLargestUnit;
-        values[i] = bounded < kLargestUnit ? bounded : kLargestUnit;
-    }
-}
-
-// Turns integers or floats into bounded floats, in place.
-template <class Sample>
-float* to_units(void* memory, size_t count) {
-    if constexpr (!std::is_same_v<Sample, float>) {
-        auto* bytes = static_cast<std::byte*>(memory);
-        constexpr size_t kBlock = 256;
-        Sample from[kBlock];
-        float to[kBlock];
-        for (size_t i = 0; i < count; i += kBlock) {  // by memcpy: the two types share the memory
-            const size_t n = std::min(kBlock, count - i);
-            std::memcpy(from, bytes + i * 4, n * 4);
-            for (size_t k = 0; k < n; ++k) to[k] = static_cast<float>(from[k]);
-            std::memcpy(bytes + i * 4, to, n * 4);
-        }
-    }
-    auto* values = static_cast<float*>(memory);
-    bound_units(values, count);
-    return values;
 }
 
 }  // namespace gim

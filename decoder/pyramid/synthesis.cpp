@@ -1,51 +1,30 @@
 #include "decoder/pyramid/synthesis.h"
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 namespace gim {
 namespace {
 
-// Synthesis undoes the steps from the last to the first. The last one changed the low samples.
-template <class Wavelet>
-constexpr int low_step(int i) {
-    return Wavelet::kSteps - 1 - 2 * i;
-}
-
-bool any_of(const int32_t* values, size_t count) {
-    int32_t all = 0;
-    for (size_t i = 0; i < count; ++i) all |= values[i];
-    return all != 0;
-}
-
-// Loads rows of the three bands as Samples: integers as they are, or dequantized. load() returns false if all are zero.
-class IntegerDetails {
+// Loads rows of the three bands as numbers: integers as they are, or dequantized. load() returns false if all are zero.
+class DetailRows {
   public:
-    IntegerDetails(const int32_t*, uint32_t, uint32_t, const LevelBands& bands, const DetailSteps&, const SharedRim&)
-        : bands_(bands) {}
-    bool load(Orientation orientation, uint32_t row, int32_t* out) {
+    DetailRows(bool integers, const Number* low, uint32_t low_columns, uint32_t low_rows, const LevelBands& bands,
+               const DetailSteps& steps, const SharedRim& rim)
+        : integers_(integers),
+          bands_(bands),
+          steps_(steps),
+          rim_(rim),
+          frames_(reinterpret_cast<const float*>(low), low_columns, low_rows, steps.cell_area) {}
+    bool load(Orientation orientation, uint32_t row, Number* out) {
         const Band& band = bands_.of(orientation);
-        std::copy_n(band.row(row), size_t{band.columns} * 3, out);
-        return any_of(out, size_t{band.columns} * 3);
-    }
-
-  private:
-    const LevelBands& bands_;
-};
-
-class LossyDetails {
-  public:
-    LossyDetails(const float* low, uint32_t low_columns, uint32_t low_rows, const LevelBands& bands,
-                 const DetailSteps& steps, const SharedRim& rim)
-        : bands_(bands), steps_(steps), rim_(rim), frames_(low, low_columns, low_rows, steps.cell_area) {}
-    bool load(Orientation orientation, uint32_t row, float* out) {
-        const Band& band = bands_.of(orientation);
-        if (steps_.in_frames) return load_framed_row(orientation, row, band, out);
         const int32_t* values = band.row(row);
         const size_t count = size_t{band.columns} * 3;
-        const float step = steps_.of(orientation);
-        for (size_t i = 0; i < count; ++i) out[i] = dequantize(values[i], step);
+        auto* floats = reinterpret_cast<float*>(out);
+        if (!integers_ && steps_.in_frames) return load_framed_row(orientation, row, band, floats);
+        if (integers_)
+            std::copy_n(values, count, reinterpret_cast<int32_t*>(out));
+        else
+            dequantize_row(values, count, steps_.of(orientation), floats);
         return any_of(values, count);
     }
 
@@ -122,6 +101,7 @@ class LossyDetails {
             if (rim_.is_copy(orientation, row, column)) f(column);
     }
 
+    bool integers_;
     const LevelBands& bands_;
     const DetailSteps& steps_;
     const SharedRim& rim_;
@@ -133,78 +113,67 @@ class LossyDetails {
     float details_[3][kLanes];
 };
 
-template <class Wavelet>
-struct DetailsOf {
-    using Type = IntegerDetails;
-};
-template <>
-struct DetailsOf<Irreversible97> {
-    using Type = LossyDetails;
-};
-
-void load_low(const int32_t* low, size_t count, int32_t* row) { std::copy_n(low, count, row); }
-void load_low(const float* low, size_t count, float* row) {
-    for (size_t i = 0; i < count; ++i) row[i] = low[i] * Irreversible97::kLowGain;
-}
-
-// Writes low and high triples in turn.
-template <class Sample>
-void interleave(size_t lows, size_t highs, const Sample* low, const Sample* high, Sample* __restrict row) {
-    // Copies four numbers at a time: the next triple covers the fourth. The last pair may have no next triple.
-    for (size_t i = 0; i + 1 < highs; ++i) {
-        std::memcpy(row + 6 * i, low + 3 * i, 4 * sizeof(Sample));
-        std::memcpy(row + 6 * i + 3, high + 3 * i, 4 * sizeof(Sample));
-    }
-    std::copy_n(low + 3 * (highs - 1), 3, row + 6 * (highs - 1));
-    std::copy_n(high + 3 * (highs - 1), 3, row + 6 * (highs - 1) + 3);
-    if (lows > highs) std::copy_n(low + 3 * highs, 3, row + 6 * highs);
-}
-
 // A row as low and high triples: as many low ones as high ones, or one more. Both have room for a triple behind, `high`
 // also before.
-template <class Sample>
 struct SplitRow {
     size_t lows, highs;
-    Sample *low, *high;
+    Number *low, *high;
     bool any_high = true;  // false if the high ones are all zero
 };
 
-// Undoes the horizontal steps and writes the row.
-template <class Wavelet, class Keeps>
-void synthesize_row(const SplitRow<typename Wavelet::Sample>& from, typename Wavelet::Sample* row, const Keeps& keeps) {
-    const auto [lows, highs, low, high, any_high] = from;
-    for (int i = 0; i < Wavelet::kSteps / 2; ++i) {
-        // Zeros change nothing in the first step: its factor is positive, and x - 0 is x, also for -0.
-        if (i > 0 || any_high)
-            lift_lows<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i), lows, highs, low, high, keeps);
-        std::copy_n(low + 3 * (lows - 1), 3, low + 3 * lows);
-        lift_row<Wavelet, Direction::kSynthesis>(low_step<Wavelet>(i) - 1, high, low, low + 3, 3 * highs);
-    }
-    interleave(lows, highs, low, high, row);
-}
+// Undoes the horizontal steps of the rows of an image.
+class HorizontalSynthesis {
+  public:
+    HorizontalSynthesis(const RowLifting& lifting, uint32_t rows, const SharedRim& rim)
+        : lifting_(lifting), rows_(rows), rim_(rim) {}
 
-// Picks the wavelet by type, and what is kept by the rim.
-template <class Sample>
-void synthesize_row_of(const SharedRim& rim, uint32_t row, uint32_t rows, const SplitRow<Sample>& from, Sample* out) {
-    if constexpr (std::is_same_v<Sample, Reversible53::Sample>) {
-        synthesize_row<Reversible53>(from, out, KeepsNone{});
-    } else if (!rim) {
-        synthesize_row<Irreversible97>(from, out, KeepsNone{});
-    } else if (row == 0 || row + 1 == rows) {
-        synthesize_row<Irreversible97>(from, out, KeepsOfRow{rim, row, rows});
-    } else {
-        synthesize_row<Irreversible97>(from, out, KeepsEnds{});
+    void write(const SplitRow& from, uint32_t row, Number* out) const {
+        const auto [lows, highs, low, high, any_high] = from;
+        for (int i = 0; i < lifting_.pairs(); ++i) {
+            const int step = lifting_.low_step(i);
+            // Zeros change nothing in the first step: its factor is positive, and x - 0 is x, also for -0.
+            if (i > 0 || any_high) undo_lows(step, from, row);
+            std::copy_n(low + 3 * (lows - 1), 3, low + 3 * lows);
+            lifting_.undo(step - 1, high, low, low + 3, 3 * highs);
+        }
+        interleave(lows, highs, low, high, out);
     }
-}
+
+  private:
+    // Cut-nodes on the rim end runs of their own; inner rows keep only their ends.
+    void undo_lows(int step, const SplitRow& from, uint32_t row) const {
+        const size_t lows = from.lows, highs = from.highs;
+        Number *low = from.low, *high = from.high;
+        std::copy_n(high, 3, high - 3);
+        std::copy_n(high + 3 * (highs - 1), 3, high + 3 * highs);
+        const auto undo = [&](size_t first, size_t last) {
+            if (first < last)
+                lifting_.undo(step, low + 3 * first, high + 3 * first - 3, high + 3 * first, 3 * (last - first));
+        };
+        const auto [begin, end] = lifted_lows(lows, static_cast<bool>(rim_));
+        if (begin > 0) lifting_.undo_end(step, low, 3);
+        size_t first = begin;
+        for (size_t i = begin; rim_ && (row == 0 || row + 1 == rows_) && i < end; ++i) {
+            if (!rim_.is_run_end(row, static_cast<uint32_t>(2 * i))) continue;
+            undo(first, i);
+            lifting_.undo_end(step, low + 3 * i, 3);
+            first = i + 1;
+        }
+        undo(first, end);
+        if (end < lows) lifting_.undo_end(step, low + 3 * end, 3);
+    }
+
+    const RowLifting& lifting_;
+    uint32_t rows_;
+    const SharedRim& rim_;
+};
 
 // Undoes the vertical steps. Each runs as soon as its rows are ready, while they are still in the cache.
-template <class Wavelet>
 class VerticalSynthesis {
   public:
-    using Sample = typename Wavelet::Sample;
-
-    VerticalSynthesis(Sample* image, uint32_t columns, uint32_t rows, const SharedRim& rim)
-        : image_(image),
+    VerticalSynthesis(const RowLifting& lifting, Number* image, uint32_t columns, uint32_t rows, const SharedRim& rim)
+        : lifting_(lifting),
+          image_(image),
           rim_(rim),
           width_(3 * size_t{columns}),
           lows_(low_count(rows)),
@@ -215,7 +184,7 @@ class VerticalSynthesis {
     void advance(ptrdiff_t i) {
         step(0, i);
         if (i == highs_) {
-            for (int k = 1; k < Wavelet::kSteps / 2; ++k) step(k, highs_);
+            for (int k = 1; k < lifting_.pairs(); ++k) step(k, highs_);
         }
     }
 
@@ -223,25 +192,24 @@ class VerticalSynthesis {
     // Runs pair k of steps on low row i. Pair k runs k rows behind pair 0.
     void step(int k, ptrdiff_t i) {
         if (i < 0) return;
-        const int s = low_step<Wavelet>(k);
+        const int s = lifting_.low_step(k);
         if (i > 0 && i < highs_ && is_lifted(i)) {
             lift_low_and_high(s, i);
         } else {
             if (i < lows_) lift_low(s, i);
             if (i > 0) lift_high(s - 1, i - 1);
         }
-        if (k + 1 < Wavelet::kSteps / 2) step(k + 1, i - 1);
+        if (k + 1 < lifting_.pairs()) step(k + 1, i - 1);
     }
     // Lifts low row i and high row i-1 at once; all the rows differ.
     void lift_low_and_high(int s, ptrdiff_t i) {
-        Sample *target = low(i), *high_target = high(i - 1);
-        const Sample *before = low(i - 1), *behind = high(i);
+        Number *target = low(i), *high_target = high(i - 1);
+        const Number *before = low(i - 1), *behind = high(i);
         const auto [begin, end] = lifted_part(rim_, static_cast<uint32_t>(2 * i), width_);
-        lift_row_pair<Wavelet, Direction::kSynthesis>(s, target + begin, high_target + begin, behind + begin,
-                                                      before + begin, end - begin);
+        lifting_.undo_pair(s, target + begin, high_target + begin, behind + begin, before + begin, end - begin);
         const auto lift_kept = [&](size_t from, size_t count) {
-            lift_end<Wavelet, Direction::kSynthesis>(s, target + from, count);
-            lift_row<Wavelet, Direction::kSynthesis>(s - 1, high_target + from, before + from, target + from, count);
+            lifting_.undo_end(s, target + from, count);
+            lifting_.undo(s - 1, high_target + from, before + from, target + from, count);
         };
         if (begin > 0) lift_kept(0, begin);
         if (end < width_) lift_kept(end, width_ - end);
@@ -249,22 +217,21 @@ class VerticalSynthesis {
     bool is_lifted(ptrdiff_t i) const {
         return i >= static_cast<ptrdiff_t>(lifted_.begin) && i < static_cast<ptrdiff_t>(lifted_.end);
     }
-    Sample* low(ptrdiff_t i) { return image_ + static_cast<size_t>(2 * std::min(i, lows_ - 1)) * width_; }
-    Sample* high(ptrdiff_t i) {
+    Number* low(ptrdiff_t i) { return image_ + static_cast<size_t>(2 * std::min(i, lows_ - 1)) * width_; }
+    Number* high(ptrdiff_t i) {
         return image_ + static_cast<size_t>(2 * std::clamp<ptrdiff_t>(i, 0, highs_ - 1) + 1) * width_;
     }
     void lift_low(int s, ptrdiff_t i) {
-        if (!is_lifted(i))
-            lift_end<Wavelet, Direction::kSynthesis>(s, low(i), width_);
-        else
-            lift_low_row<Wavelet, Direction::kSynthesis>(s, low(i), high(i - 1), high(i), width_, rim_,
-                                                         static_cast<uint32_t>(2 * i));
+        const auto [begin, end] =
+            is_lifted(i) ? lifted_part(rim_, static_cast<uint32_t>(2 * i), width_) : LiftedRange{0, 0};
+        lifting_.undo(s, low(i) + begin, high(i - 1) + begin, high(i) + begin, end - begin);
+        lifting_.undo_end(s, low(i), begin);
+        lifting_.undo_end(s, low(i) + end, width_ - end);
     }
-    void lift_high(int s, ptrdiff_t i) {
-        lift_row<Wavelet, Direction::kSynthesis>(s, high(i), low(i), low(i + 1), width_);
-    }
+    void lift_high(int s, ptrdiff_t i) { lifting_.undo(s, high(i), low(i), low(i + 1), width_); }
 
-    Sample* image_;
+    const RowLifting& lifting_;
+    Number* image_;
     const SharedRim& rim_;
     size_t width_;
     ptrdiff_t lows_, highs_;
@@ -273,38 +240,31 @@ class VerticalSynthesis {
 
 }  // namespace
 
-template <class Wavelet>
-void synthesize(uint32_t columns, uint32_t rows, const typename Wavelet::Sample* low, const LevelBands& bands,
-                const DetailSteps& steps, typename Wavelet::Sample* work, typename Wavelet::Sample* image,
-                const SharedRim& rim) {
+void synthesize(const RowLifting& lifting, uint32_t columns, uint32_t rows, const Number* low, const LevelBands& bands,
+                const DetailSteps& steps, Number* work, Number* image, const SharedRim& rim) {
     const size_t lows = low_count(columns), highs = high_count(columns), width = size_t{columns} * 3;
-    using Sample = typename Wavelet::Sample;
-    Sample* low_row = work;
-    Sample* high_row = work + 3 * (lows + 1) + 3;
-    VerticalSynthesis<Wavelet> vertical(image, columns, rows, rim);
-    typename DetailsOf<Wavelet>::Type details(low, low_count(columns), low_count(rows), bands, steps, rim);
+    Number* low_row = work;
+    Number* high_row = work + 3 * (lows + 1) + 3;
+    const HorizontalSynthesis horizontal(lifting, rows, rim);
+    VerticalSynthesis vertical(lifting, image, columns, rows, rim);
+    DetailRows details(lifting.integers(), low, low_count(columns), low_count(rows), bands, steps, rim);
     for (uint32_t i = 0; i <= rows / 2; ++i) {
         if (2 * i < rows) {
-            load_low(low + i * 3 * lows, 3 * lows, low_row);
+            lifting.load_low(low + i * 3 * lows, 3 * lows, low_row);
             const bool any = details.load(Orientation::kHorizontal, i, high_row);
-            synthesize_row_of(rim, 2 * i, rows, {lows, highs, low_row, high_row, any}, image + 2 * i * width);
+            horizontal.write({lows, highs, low_row, high_row, any}, 2 * i, image + 2 * i * width);
         }
         if (2 * i + 1 < rows) {
             const bool any_low = details.load(Orientation::kVertical, i, low_row);
             const bool any_high = details.load(Orientation::kDiagonal, i, high_row);
-            Sample* row = image + (2 * i + 1) * width;
+            Number* row = image + (2 * i + 1) * width;
             if (any_low || any_high)
-                synthesize_row_of(rim, 2 * i + 1, rows, {lows, highs, low_row, high_row, any_high}, row);
+                horizontal.write({lows, highs, low_row, high_row, any_high}, 2 * i + 1, row);
             else
-                std::fill_n(row, width, Sample{0});  // what lifting makes of zeros
+                std::fill_n(row, width, Number{0});  // what lifting makes of zeros
         }
         vertical.advance(static_cast<ptrdiff_t>(i));
     }
 }
-
-template void synthesize<Reversible53>(uint32_t, uint32_t, const int32_t*, const LevelBands&, const DetailSteps&,
-                                       int32_t*, int32_t*, const SharedRim&);
-template void synthesize<Irreversible97>(uint32_t, uint32_t, const float*, const LevelBands&, const DetailSteps&,
-                                         float*, float*, const SharedRim&);
 
 }  // namespace gim

@@ -32,12 +32,12 @@ Status image_stream(const Header& header, std::span<const uint8_t> payload, uint
     return Status::kOk;
 }
 
-template <class Wavelet>
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                       const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
     const PyramidShape shape = square_shape(header.side_exponents[image], level, detail_coding_of(header),
                                             1 << (header.bits - 1), header.tangential > 0 ? &seams : nullptr);
-    PyramidDecoder<Wavelet> decoder(shape, ws.pyramid);
+    const bool integers = header.coding == Coding::kLossless;
+    PyramidDecoder decoder(integers, shape, ws.pyramid);
     new (ws.pyramid.models) BandModels(coefficient_kind_of(header));
     for (uint32_t l = header.level_count_of(image); l-- > level;) {
         Chunk chunk;
@@ -49,7 +49,7 @@ Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint3
         if (Status s = decode_stream(decoder, ws.pyramid, stream, l); s != Status::kOk) return s;
     }
     const size_t side = size_t{(header.side(image) - 1) >> level} + 1;
-    *samples = to_units<typename Wavelet::Sample>(ws.pyramid.images[0], side * side * 3);
+    *samples = to_units(integers, ws.pyramid.images[0], side * side * 3);
     return Status::kOk;
 }
 
@@ -79,10 +79,7 @@ ImageWorkspace lay_out(uint32_t side, Arena* arena) {
 
 Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,
                     const SeamTable& seams, const ImageWorkspace& ws, float** samples) {
-    const Status status = header.coding == Coding::kLossless
-                              ? decode_pyramid<Reversible53>(header, file, image, level, seams, ws, samples)
-                              : decode_pyramid<Irreversible97>(header, file, image, level, seams, ws, samples);
-    if (status != Status::kOk) return status;
+    if (Status s = decode_pyramid(header, file, image, level, seams, ws, samples); s != Status::kOk) return s;
     const uint32_t side = ((header.side(image) - 1) >> level) + 1;
     ring_classes(seams, side, {ws.class_of, ring_length(side)});
     fuse(side, ws.class_of, ring_class_count(seams, side), *samples, ws.fuse);

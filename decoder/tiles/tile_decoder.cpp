@@ -1,8 +1,8 @@
 #include "decoder/tiles/tile_decoder.h"
 
 #include <algorithm>
+#include <bit>
 #include <new>
-#include <type_traits>
 
 #include "decoder/pyramid/pyramid_decoder.h"
 #include "decoder/pyramid/range_decoder.h"
@@ -21,6 +21,7 @@ struct TileCoding {
     DetailCoding details;
     CoefficientKind kind;
     int32_t middle;  // what the base is stored relative to
+    const TileArithmetic& arithmetic;
 };
 
 // Lets the decoder take part in traversals that ask a writer for the complex.
@@ -30,16 +31,15 @@ void scale(float* values, size_t count, float factor) {
     for (size_t i = 0; i < count; ++i) values[i] = values[i] * factor;
 }
 
-// Decodes from the base up to the level asked for, stream by stream.
-template <class Wavelet>
+// Decodes from the base up to the level asked for, stream by stream. Samples are numbers of four bytes: integers if the
+// arithmetic is, else floats.
 class TileDecoder {
   public:
-    using Sample = typename Wavelet::Sample;
-
     TileDecoder(const TileCoding& coding, uint32_t level, TileWorkspace& ws)
         : shape_(coding.shape),
           coding_(coding.details),
           middle_(coding.middle),
+          arithmetic_(coding.arithmetic),
           steps_(coding.shape.exponent),
           level_(level),
           ws_(ws) {
@@ -58,7 +58,7 @@ class TileDecoder {
   private:
     // Those of the level asked for are in slot 0.
     uint32_t slot(uint32_t step) const { return (steps_ - level_ - step) & 1; }
-    Sample* samples(uint32_t step) const { return static_cast<Sample*>(ws_.samples[slot(step)]); }
+    uint32_t* samples(uint32_t step) const { return static_cast<uint32_t*>(ws_.samples[slot(step)]); }
     static size_t samples_after(uint32_t step) { return TilePlanes(1u << step).size(); }
 
     bool decode_base(RangeDecoder& coder) {
@@ -68,14 +68,9 @@ class TileDecoder {
         const float step = tile_base_step(shape_, coding_.quantizer);
         const TilePlanes planes(1);
         for (uint32_t h = 0; h < complex.half_edges(); ++h) {
-            Sample* to = samples(0) + tile_of(h) * planes.size() + planes.sides[side_of(h)].low.at(0);
+            auto* to = samples(0) + tile_of(h) * planes.size() + planes.sides[side_of(h)].low.at(0);
             const int32_t* value = ws_.base + 3 * size_t{complex.vertex[h]};
-            for (size_t k = 0; k < 3; ++k) {
-                if constexpr (std::is_integral_v<Sample>)
-                    to[k] = static_cast<int32_t>(static_cast<uint32_t>(value[k]) + static_cast<uint32_t>(middle_));
-                else
-                    to[k] = static_cast<float>(value[k]) * step + static_cast<float>(middle_);
-            }
+            for (size_t k = 0; k < 3; ++k) to[k] = number_of(value[k], step);
         }
         return true;
     }
@@ -90,36 +85,48 @@ class TileDecoder {
         if (!tile_coder.code_step(complex, planes, details, step > 1 ? ws_.details[slot(step - 1)] : nullptr,
                                   ws_.flags))
             return false;
-        Sample* from = samples(step - 1);
+        void* from = ws_.samples[slot(step - 1)];
         const DetailSteps detail_steps = tile_steps_at(shape_, coding_, steps_ - step + 1);
-        load_tile_details(complex, planes, details, detail_steps, from);
-        if constexpr (!std::is_integral_v<Sample>) {
-            if (Wavelet::kLowGain != 1) {
-                for (uint32_t t = 0; t < complex.tiles; ++t)
-                    scale(from + t * planes.size(), static_cast<size_t>(planes.horizontal()), Wavelet::kLowGain);
-            }
+        if (arithmetic_.is_integer()) {
+            load_tile_details(complex, planes, details, static_cast<int32_t*>(from));
+        } else {
+            auto* floats = static_cast<float*>(from);
+            TileDetails(complex, planes, detail_steps, floats).load(details);
+            for (uint32_t t = 0; t < complex.tiles && arithmetic_.low_gain != 1; ++t)
+                scale(floats + t * planes.size(), static_cast<size_t>(planes.horizontal()), arithmetic_.low_gain);
         }
-        TileLifting<Wavelet>(complex, planes, from, static_cast<typename Wavelet::Sum*>(ws_.sums)).synthesize();
+        TileSteps(arithmetic_, complex, planes, from, ws_.sums).synthesize();
         const bool is_last = step == steps_ - level_;
         const size_t stride = is_last ? planes.size() : samples_after(step);
         for (uint32_t t = 0; t < complex.tiles; ++t)
-            join_planes(planes, from + t * planes.size(), samples(step) + t * stride);
+            join_planes(planes, samples(step - 1) + t * planes.size(), samples(step) + t * stride);
         return true;
+    }
+
+    // A number of the base as a sample, as its bits.
+    uint32_t number_of(int32_t value, float step) const {
+        if (arithmetic_.is_integer()) return static_cast<uint32_t>(value) + static_cast<uint32_t>(middle_);
+        return std::bit_cast<uint32_t>(static_cast<float>(value) * step + static_cast<float>(middle_));
     }
 
     const TileShape& shape_;
     DetailCoding coding_;
     int32_t middle_;
+    const TileArithmetic& arithmetic_;
     uint32_t steps_, level_;
     TileWorkspace& ws_;
     uint32_t done_ = 0;
 };
 
-template <class Wavelet>
-Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
-                   float** samples) {
-    TileDecoder<Wavelet> decoder({header.tiles, detail_coding_of(header), tile_kind_of(header), 1 << (header.bits - 1)},
-                                 level, ws);
+const TileArithmetic& arithmetic_of(const Header& header) {
+    if (header.coding == Coding::kLossless) return kTiles53;
+    return header.tiles.is_sharp ? kTilesSharp : kTiles97;
+}
+
+Status decode_levels(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws) {
+    TileDecoder decoder(
+        {header.tiles, detail_coding_of(header), tile_kind_of(header), 1 << (header.bits - 1), arithmetic_of(header)},
+        level, ws);
     for (uint32_t l = header.level_count; l-- > level;) {
         Chunk chunk;
         uint64_t offset = 0;
@@ -129,8 +136,6 @@ Status decode_with(const Header& header, std::span<const uint8_t> file, uint32_t
         RangeDecoder coder(payload);
         if (!decoder.decode(coder, l) || !coder.intact()) return Status::kMalformed;
     }
-    const size_t side = header.tiles.intervals(level) + 1;
-    *samples = to_units<typename Wavelet::Sample>(ws.samples[0], ws.complex.tiles * side * side * 3);
     return Status::kOk;
 }
 
@@ -179,18 +184,19 @@ Status read_complex(const Header& header, std::span<const uint8_t> file, TileWor
 Status decode_tiles(const Header& header, std::span<const uint8_t> file, uint32_t level, TileWorkspace& ws,
                     float** samples) {
     if (Status s = read_complex(header, file, ws); s != Status::kOk) return s;
-    if (header.coding == Coding::kLossless) return decode_with<Tiles53>(header, file, level, ws, samples);
-    return header.tiles.is_sharp ? decode_with<TilesSharp>(header, file, level, ws, samples)
-                                 : decode_with<Tiles97>(header, file, level, ws, samples);
+    if (Status s = decode_levels(header, file, level, ws); s != Status::kOk) return s;
+    const size_t side = header.tiles.intervals(level) + 1;
+    *samples = to_units(header.coding == Coding::kLossless, ws.samples[0], ws.complex.tiles * side * side * 3);
+    return Status::kOk;
 }
 
 Status decode_tile_samples(const TileShape& shape, const PlaneChunk& plane, uint32_t level, TileWorkspace& ws,
                            float** samples) {
-    TileDecoder<Tiles97> decoder({shape, {plane.quantizer}, CoefficientKind::kPlanes, 0}, level, ws);
+    TileDecoder decoder({shape, {plane.quantizer}, CoefficientKind::kPlanes, 0, kTiles97}, level, ws);
     RangeDecoder coder(plane.stream);
     if (!decoder.decode(coder, level) || !coder.intact()) return Status::kMalformed;
     const size_t side = shape.intervals(level) + 1;
-    *samples = to_units<float>(ws.samples[0], ws.complex.tiles * side * side * 3);
+    *samples = to_units(false, ws.samples[0], ws.complex.tiles * side * side * 3);
     return Status::kOk;
 }
 

@@ -13,7 +13,7 @@ namespace gim {
 
 // Values of kinds that are not in frames: integers as they are.
 inline void load_tile_details(const QuadComplex& complex, const TilePlanes& planes, const int32_t* details,
-                              const DetailSteps&, int32_t* samples) {
+                              int32_t* samples) {
     for (uint32_t t = 0; t < complex.tiles; ++t)
         std::copy_n(details + t * planes.details(), planes.details(),
                     samples + t * planes.size() + planes.horizontal());
@@ -110,10 +110,5 @@ class TileDetails {
     float step_[kLanes] = {}, details_[3][kLanes];
     float* to_[kLanes];
 };
-
-inline void load_tile_details(const QuadComplex& complex, const TilePlanes& planes, const int32_t* details,
-                              const DetailSteps& steps, float* samples) {
-    TileDetails(complex, planes, steps, samples).load(details);
-}
 
 }  // namespace gim
