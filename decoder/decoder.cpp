@@ -33,7 +33,7 @@ const char* gim_status_text(gim_status status) {
         case Status::kNoSuchLevel:
             return "no such level: coarser than the coarsest one of this image";
         case Status::kNoSuchPlane:
-            return "no such plane: the file has no normals or colours of their own";
+            return "no such plane: the file has no normals, colours or labels of their own";
     }
     return "unknown status";
 }
@@ -141,6 +141,7 @@ gim_status gim_read_chunk(const gim_info* info, const void* bytes, size_t size, 
     if (c.type == ChunkType::kNormals) name = "NRML";
     if (c.type == ChunkType::kColors) name = "COLR";
     if (c.type == ChunkType::kDisplacements) name = "DISP";
+    if (c.type == ChunkType::kLabels) name = "LABL";
     std::memcpy(chunk->name, name, 4);
     chunk->type = static_cast<uint32_t>(c.type);
     chunk->level = c.type == ChunkType::kLevel ? static_cast<int32_t>(header.kept_levels() - levels_seen) : -1;

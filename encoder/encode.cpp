@@ -13,6 +13,7 @@
 #include "encoder/layout_runs.h"
 #include "encoder/layouts.h"
 #include "encoder/planes/input_colors.h"
+#include "encoder/planes/labels.h"
 #include "encoder/race_layouts.h"
 #include "encoder/surface/authored_edges.h"
 #include "encoder/surface/clean.h"
@@ -60,6 +61,7 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
                            const Observer& observer) {
     StageClock clock(progress);
     GIM_CHECK(check_appearance(input));
+    GIM_CHECK(check_labels(input, options.layout));
 
     clock.begin(Stage::kClean);
     GIM_CHECK(check_extent(input, options.bits));
@@ -82,6 +84,25 @@ Result<Encoded> run_stages(const TriangleMesh& input, EncodeOptions options, con
     return timed(encode_by(options.layout, prepared, options, clock, local_observer), clock);
 }
 
+// Labels come to a finished file. So they take their bytes from a budget in another run.
+Result<Encoded> run_within_budget(const TriangleMesh& input, const EncodeOptions& options, const Progress& progress,
+                                  const Observer& observer) {
+    EncodeOptions now = options;
+    auto encoded = run_stages(input, now, progress, observer);
+    if (options.rate.kind != RateTarget::Kind::kBytes || !has_labels(input)) return encoded;
+    constexpr int kMostRuns = 4;
+    for (int run = 1; encoded.ok() && double(encoded.value().bytes.size()) > options.rate.value; ++run) {
+        const double excess = double(encoded.value().bytes.size()) - options.rate.value;
+        if (run == kMostRuns || now.rate.value <= excess) {
+            return Error{Stage::kCode, "the labels leave too few bytes for the surface; allow " +
+                                           std::to_string(static_cast<uint64_t>(excess)) + " more"};
+        }
+        now.rate.value -= excess;
+        encoded = run_stages(input, now, progress, {});
+    }
+    return encoded;
+}
+
 }  // namespace
 
 Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& given, const Progress& progress,
@@ -89,7 +110,7 @@ Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& given, con
     GIM_CHECK(check_options(given));
     EncodeOptions options = given;
     options.node_side = std::min(options.node_side, options.side);  // an image cannot be finer than itself
-    return guarded(options.threads, [&] { return run_stages(mesh, options, progress, observer); });
+    return guarded(options.threads, [&] { return run_within_budget(mesh, options, progress, observer); });
 }
 
 }  // namespace gim

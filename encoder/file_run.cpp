@@ -7,6 +7,7 @@
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/level_report.h"
 #include "encoder/code/measure_boxes.h"
+#include "encoder/planes/labels.h"
 #include "encoder/planes/make_planes.h"
 #include "encoder/rate_search.h"
 
@@ -34,6 +35,12 @@ struct FileRun::Impl {
         if (images_->is_fitted_to_quantizer()) {
             clock_.begin(Stage::kPlanes);
             bytes = plane_maker_.renew(std::move(bytes), *images_);
+        }
+        if (has_labels(original_.input)) {
+            clock_.begin(Stage::kPlanes);
+            GIM_TRY(labels, cell_labels(bytes, original_.input, options_.threads));
+            GIM_TRY(labelled, with_labels(bytes, labels));
+            bytes = std::move(labelled);
         }
         Encoded encoded{std::move(bytes), std::move(report_)};
         images_->describe(encoded.report);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "encoder/code/rate_target.h"
+#include "encoder/planes/labels.h"
 #include "encoder/squares/best_side.h"
 #include "encoder/squares/choose_cut.h"
 #include "encoder/tiles/best_tiles.h"
@@ -24,6 +25,7 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
 
 Result<std::unique_ptr<FileRun>> LayoutRuns::make(const EncodeOptions& now, const Observer& observer,
                                                   CutPreferences& cuts) {
+    GIM_CHECK(check_labels(prepared_.original.input, layout()));
     EncodeReport report = prepared_.report;
     const bool may_grow = now.side == options_.side;  // smaller sides are trials
     GIM_TRY(images, layout_.make({prepared_.mesh, now, clock_, observer, report, cuts, tileable_, may_grow}));

@@ -34,7 +34,7 @@ bool in_range(Real value, Real low, Real high) {
     return value >= low && value <= high;
 }  // false for a NaN
 
-// Checks the chunks: SEAM once, then kept_levels() times LEVL, then each kind of plane at most once. META may stand anywhere,
+// Checks the chunks: SEAM once, then kept_levels() times LEVL, then each kind of plane, and labels, at most once. META may stand anywhere,
 // but once; unknown optional chunks may stand anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
@@ -59,9 +59,12 @@ Status check_index(Header* header) {
                 break;
             case ChunkType::kNormals:
             case ChunkType::kColors:
-            case ChunkType::kDisplacements: {
+            case ChunkType::kDisplacements:
+            case ChunkType::kLabels: {
                 const uint32_t kind = 1u << static_cast<uint32_t>(chunk.type);
                 if (!chunk.optional || chunk.zstd || (planes_seen & kind) != 0 || levels != header->kept_levels())
+                    return Status::kMalformed;
+                if (chunk.type == ChunkType::kLabels && header->layout == FileLayout::kCharts)
                     return Status::kMalformed;
                 planes_seen |= kind;
                 break;

@@ -33,6 +33,7 @@ enum class ChunkType : uint32_t {
     kNormals = 3,        // NRML, optional: normals at a resolution of their own (format/plane_code.h)
     kColors = 4,         // COLR, optional: colours, likewise
     kDisplacements = 5,  // DISP, optional: displacements, likewise
+    kLabels = 6,         // LABL, optional: a label for each cell (format/label_code.h)
 };
 
 struct ContainerLimits {

@@ -14,6 +14,7 @@ void take_drops(const std::vector<std::string>& drops, CutOptions* options) {
         if (drop == "normals") options->drop_normals = true;
         if (drop == "colors") options->drop_colors = true;
         if (drop == "displacements") options->drop_displacements = true;
+        if (drop == "labels") options->drop_labels = true;
         if (drop == "text") options->drop_text = true;
     }
 }
@@ -43,10 +44,11 @@ Subcommand add_cut(CLI::App& app) {
             ->check(CLI::Range(1.0, 1e15))
             ->type_name("N")
             ->excludes(level);
-    CLI::Option* drop = sub->add_option("--drop", *drops, "Leave these out: normals, colors, displacements, text")
-                            ->delimiter(',')
-                            ->check(CLI::IsMember({"normals", "colors", "displacements", "text"}))
-                            ->type_name("LIST");
+    CLI::Option* drop =
+        sub->add_option("--drop", *drops, "Leave these out: normals, colors, displacements, labels, text")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"normals", "colors", "displacements", "labels", "text"}))
+            ->type_name("LIST");
     sub->final_callback([command, drops, level, bytes, drop] {
         if (level->count() + bytes->count() + drop->count() == 0)
             throw CLI::RequiredError("One of --level, --bytes and --drop");

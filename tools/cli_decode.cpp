@@ -38,13 +38,15 @@ Subcommand add_decode(CLI::App& app) {
         "equal positions, because texture coordinates jump there. exr holds the samples: float32 channels X, Y, Z\n"
         "and mask. Far from 0, where float32 does not do, ply, obj and off hold float64, glb a node translation, exr\n"
         "the attribute gimOrigin; stl is rounded, with a warning.\n"
+        "IN may be a .glb of gim encode: then its meshes become plain glTF arrays, and all else stays.\n"
         "Colours become vertex colours (ply, obj) or the base-colour texture (glb). A normal map becomes the normal\n"
         "texture (glb).\n\n"
         "  gim decode bunny.gim bunny.ply\n"
         "  gim decode bunny.gim bunny-129.glb --level 1\n"
+        "  gim decode scene-with-gim.glb plain.glb\n"
         "  gim decode bunny.gim bunny.obj --normal-map normals.png --color-map colors.png\n"
         "  gim decode bunny.gim - --format stl | other-program");
-    sub->add_option("IN", c.input, ".gim file to read (-: standard input)")->required();
+    sub->add_option("IN", c.input, ".gim file, or glTF with such meshes, to read (-: standard input)")->required();
     sub->add_option("OUT", c.output, std::string("File to write: ") + kExtensions + " (-: standard output)")
         ->required();
     sub->add_option("--format", c.format, "Format of OUT. Default: its extension")

@@ -198,9 +198,15 @@ void apply_rate(EncodeArguments& a) {
 
 void add_file_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option("MESH", a.command.input, "Mesh to read (-: standard input)")->required();
-    sub->add_option("OUT", a.command.output, ".gim file to write (-: standard output)")->required();
+    sub->add_option("OUT", a.command.output, ".gim file to write (-: standard output), or .glb")->required();
     add_mesh_format(sub, a.command.format,
                     "Format of MESH. Default: its content tells, else its extension. gim: a headerless image");
+}
+
+void add_glb_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_flag("--fallback", a.command.fallback,
+                  "GLB: also write plain arrays to OUT.fallback.bin, for readers that do not know the extension. Other "
+                  "readers do not fetch that file");
 }
 
 void add_report_options(CLI::App* sub, EncodeArguments& a) {
@@ -217,7 +223,7 @@ void add_report_options(CLI::App* sub, EncodeArguments& a) {
 Subcommand add_encode(CLI::App& app) {
     const auto arguments = std::make_shared<EncodeArguments>();
     EncodeArguments& a = *arguments;
-    CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file");
+    CLI::App* sub = app.add_subcommand("encode", "Turn a mesh into a .gim file, or the meshes of a GLB");
     sub->footer(
         "MESH is PLY, OBJ, OFF, STL, glTF or GLB. The content tells the format, else the extension. glTF is read in\n"
         "the file's own pose: morph weights and skins apply, animations do not. Draco and meshopt are decompressed.\n"
@@ -230,6 +236,10 @@ Subcommand add_encode(CLI::App& app) {
         "name. If these smooth everything or nothing, the shape tells which edges are hard.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
         "size tells its side. gim imports it with the parametrization that it has.\n"
+        "If OUT is a .glb and MESH is glTF, the scene stays: nodes, materials, animations, cameras, lights. Each mesh\n"
+        "becomes a .gim in it (extension EXT_gim_geometry), with the options for each of them. A mesh that gim cannot\n"
+        "carry stays as it is, with a warning: skinned, with morph targets, points, lines, smaller than its .gim.\n"
+        "gim decode makes a plain glTF of it.\n"
         "Two names of one file are refused. If OUT is standard output, the summary goes to stderr.\n"
         "Choose at most one of --lossless, --psnr, --max-error, --bytes and --quality. Default: --quality 75.\n\n"
         "  gim encode bunny.ply bunny.gim\n"
@@ -237,6 +247,7 @@ Subcommand add_encode(CLI::App& app) {
         "  gim encode bunny.ply bunny.gim --max-error 0.5%\n"
         "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
         "  gim encode bunny.ply bunny.gim --size 129 --normals 512\n"
+        "  gim encode scene.glb small.glb --psnr 70\n"
         "  zcat bunny.ply.gz | gim encode - bunny.gim\n"
         "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done     several meshes");
     add_file_options(sub, a);
@@ -245,6 +256,7 @@ Subcommand add_encode(CLI::App& app) {
     add_rate_options(sub, a);
     add_fit_options(sub, a);
     add_plane_options(sub, a);
+    add_glb_options(sub, a);
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     sub->add_option("--threads", a.command.options.threads,
                     "Number of threads, 0: all cores. The bytes do not depend on it")

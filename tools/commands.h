@@ -23,9 +23,12 @@ struct EncodeCommand {
     std::string json;          // file for the report; empty: none
     std::string debug_folder;  // empty: no pictures
     bool quiet = false;
+    bool fallback = false;                       // GLB: also plain arrays, in a file of their own
     uint64_t max_memory = default_max_memory();  // for the mesh as read
 };
 int run_encode(const EncodeCommand& command);
+// If OUT is a GLB.
+int run_encode_glb(const EncodeCommand& command);
 
 struct DecodeCommand {
     std::string input, output;

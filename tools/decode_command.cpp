@@ -6,6 +6,7 @@
 
 #include "tools/commands.h"
 #include "tools/decoded.h"
+#include "tools/encode_glb.h"
 #include "tools/file.h"
 #include "tools/output_files.h"
 #include "tools/plane_write.h"
@@ -87,6 +88,26 @@ int write_all_files(const DecodeCommand& command, std::vector<OutputFile> files)
     return 0;
 }
 
+// Whether the options are those that a whole glTF file takes.
+std::optional<Error> check_options_of_glb(const DecodeCommand& command, SurfaceFormat format) {
+    if (format != SurfaceFormat::kGlb)
+        return Error{Stage::kInput, "this is glTF with a whole scene; decode it to a .glb file"};
+    if (command.fused || command.split_sharp || !command.normal_map.empty() || !command.color_map.empty())
+        return Error{Stage::kInput, "glTF has its arrays and pictures as it is; only --level tells how to decode it"};
+    return {};
+}
+
+int decode_glb_file(const DecodeCommand& command, const Bytes& file, SurfaceFormat format) {
+    const std::string input_name = shown_name(command.input, Direction::kRead);
+    if (const auto error = check_options_of_glb(command, format)) return report_error(input_name, *error);
+    const std::string folder = std::filesystem::path(command.input).parent_path().string();
+    ReadContext context{folder, nullptr, MemoryBudget(default_max_memory())};
+    Result<Bytes> glb = decode_glb({reinterpret_cast<const char*>(file.data()), file.size()}, context, command.level);
+    print_warnings(input_name, context.warnings);
+    if (!glb.ok()) return report_error(input_name, glb.error());
+    return write_all_files(command, {{"OUT", command.output, std::move(glb.value())}});
+}
+
 }  // namespace
 
 int run_decode(const DecodeCommand& command) {
@@ -106,6 +127,7 @@ int run_decode(const DecodeCommand& command) {
 
     const Result<Bytes> file = read_named(command.input);
     if (!file.ok()) return report_error(input_name, file.error());
+    if (detect_format(file.value(), "") == MeshFormat::kGltf) return decode_glb_file(command, file.value(), *format);
     const bool has_details = !command.plain && *format != SurfaceFormat::kExr;
     const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes,
                                                 has_details ? WithDetails::kYes : WithDetails::kNo);

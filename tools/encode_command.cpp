@@ -193,6 +193,11 @@ std::optional<FileError> check_names(const EncodeCommand& command) {
 }  // namespace
 
 int run_encode(const EncodeCommand& command) {
+    if (extension_of(command.output) == "glb") return run_encode_glb(command);
+    if (command.fallback) {
+        return report_error(shown_name(command.output, Direction::kWrite),
+                            {Stage::kWrite, "--fallback belongs to a GLB; name OUT something.glb"});
+    }
     if (const auto failure = check_names(command)) return report_error(*failure);
 
     const std::string input_name = shown_name(command.input, Direction::kRead);

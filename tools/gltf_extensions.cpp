@@ -71,6 +71,8 @@ std::vector<std::string> strange_names(const Json& root, const std::string& list
 
 std::vector<std::string> check_extensions(const Json& root) {
     const std::vector<std::string> required = strange_names(root, "extensionsRequired");
+    if (std::find(required.begin(), required.end(), "EXT_gim_geometry") != required.end())
+        throw Failure("its meshes are .gim (EXT_gim_geometry); make plain glTF of it first: gim decode IN.glb OUT.glb");
     if (!required.empty()) {
         std::string list = required.front();
         for (size_t i = 1; i < required.size(); ++i) list += ", " + required[i];

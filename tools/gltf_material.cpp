@@ -35,6 +35,8 @@ void apply_transform(const Json& transform, BaseColor& color) {
     color.to_v = {-s * scale[0], c * scale[1], offset[1]};
 }
 
+}  // namespace
+
 void read_texture(const Json& info, BaseColor& color) {
     color.texture = whole_number(info, "index");
     color.texcoord_set = whole_number(info, "texCoord").value_or(0);
@@ -43,8 +45,6 @@ void read_texture(const Json& info, BaseColor& color) {
     color.texcoord_set = whole_number(transform, "texCoord").value_or(color.texcoord_set);
     apply_transform(transform, color);
 }
-
-}  // namespace
 
 uint32_t Pictures::load(uint64_t texture) {
     const auto known = textures_loaded_.find(texture);

@@ -36,6 +36,9 @@ struct BaseColor {
     std::array<double, 3> to_v = {0, 1, 0};
 };
 
+// Sets texture, set of coordinates and transform from a texture info.
+void read_texture(const Json& info, BaseColor& color);
+
 // The default material if the primitive has none.
 BaseColor base_color(const Json& root, const Json& primitive);
 

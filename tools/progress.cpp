@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <string>
 
 namespace gim {
 namespace {
@@ -24,6 +23,11 @@ void ProgressPrinter::finish_stage() {
         std::fprintf(stderr, "\r  %-14s %7.2f s   \n", name.c_str(), seconds(Clock::now() - begin_));
     }
     stage_.reset();
+}
+
+void ProgressPrinter::begin_part(const std::string& title) {
+    finish_stage();
+    if (visible_) std::fprintf(stderr, "%s\n", title.c_str());
 }
 
 void ProgressPrinter::update(Stage stage, double fraction) {

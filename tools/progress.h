@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "gim/encoder.h"
 
@@ -15,6 +16,8 @@ class ProgressPrinter {
     ProgressPrinter(const ProgressPrinter&) = delete;
     ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
+    // Begins a new list of stages, with a line of its own above it.
+    void begin_part(const std::string& title);
     void update(Stage stage, double fraction);
     // The callback for the encoder. Empty if there is nothing to print. Must not outlive the printer.
     Progress callback();

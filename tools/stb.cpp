@@ -1,6 +1,7 @@
 #include "tools/stb.h"
 
 #include "tools/little_endian.h"
+#include "tools/texture_picture.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -95,6 +96,50 @@ DecodedPicture decode_picture(std::span<const uint8_t> file) {
     picture.rgb.assign(pixels, pixels + size_t{picture.width} * picture.height * 3);
     stbi_image_free(pixels);
     return picture;
+}
+
+RgbaPicture decode_rgba(std::span<const uint8_t> file) {
+    constexpr uint64_t kMostPixels = uint64_t{1} << 28;
+    RgbaPicture picture;
+    const uint64_t pixel_count = pixels_in_picture(file);
+    if (pixel_count == 0 || pixel_count > kMostPixels) return picture;
+    int width = 0, height = 0, channels = 0;
+    stbi_uc* pixels = stbi_load_from_memory(file.data(), static_cast<int>(file.size()), &width, &height, &channels, 4);
+    if (!pixels) return picture;
+    picture.width = static_cast<uint32_t>(width);
+    picture.height = static_cast<uint32_t>(height);
+    picture.is_jpeg = file[0] == 0xFF;
+    picture.pixels.assign(pixels, pixels + size_t{picture.width} * picture.height * 4);
+    stbi_image_free(pixels);
+    for (size_t i = 3; i < picture.pixels.size() && !picture.has_alpha; i += 4)
+        picture.has_alpha = picture.pixels[i] != 255;
+    return picture;
+}
+
+namespace {
+
+void keep_bytes(void* context, void* data, int size) {
+    const auto* begin = static_cast<const uint8_t*>(data);
+    auto* bytes = static_cast<std::vector<uint8_t>*>(context);
+    bytes->insert(bytes->end(), begin, begin + size);
+}
+
+}  // namespace
+
+std::vector<uint8_t> encode_png(const std::vector<uint8_t>& pixels, uint32_t width, uint32_t height, int channels) {
+    std::vector<uint8_t> bytes;
+    const int columns = static_cast<int>(width);
+    stbi_write_png_to_func(keep_bytes, &bytes, columns, static_cast<int>(height), channels, pixels.data(),
+                           channels * columns);
+    return bytes;
+}
+
+std::vector<uint8_t> encode_jpeg(const std::vector<uint8_t>& pixels, uint32_t width, uint32_t height) {
+    constexpr int kQuality = 90;
+    std::vector<uint8_t> bytes;
+    stbi_write_jpg_to_func(keep_bytes, &bytes, static_cast<int>(width), static_cast<int>(height), 3, pixels.data(),
+                           kQuality);
+    return bytes;
 }
 
 std::vector<TextBox> text_boxes(const std::string& text) {

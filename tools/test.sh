@@ -4,6 +4,7 @@
 # Usage: bash tools/test.sh           all of this
 #        bash tools/test.sh gpu       only what draws, by OpenGL on Mesa's llvmpipe and by WebGPU in Chromium; two minutes
 #        bash tools/test.sh web       only the npm package and the viewer, in Node and in Chromium; three minutes
+#        bash tools/test.sh gltf      only glTF files, with the Khronos validator if npm can fetch it
 #        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
 #                                     empty Debian; three minutes, and the build if there is none
 #        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
@@ -38,6 +39,19 @@ test_gpu() {
         "$GIM_ROOT/build/gpu/tests/gpu/$name" --gtest_brief=1 || die "$name failed"
     done
     (test_in_browser)
+}
+
+# The validator is a package of npm. Its tests skip, and say so, where it is not there.
+test_gltf() {
+    local name
+    for name in node:nodejs npm:npm; do
+        command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") ||
+            say "No ${name%%:*}, so the validator's test will skip"
+    done
+    (cd "$GIM_ROOT/tests/gltf" && npm ci --no-audit --no-fund) || say "npm cannot fetch the validator, so its test will skip"
+    install_packages "${GIM_BUILD_PACKAGES[@]}"
+    configure_and_build ci
+    "$GIM_ROOT/build/ci/tests/encode_glb_test" || die "encode_glb_test failed"
 }
 
 test_packages() {
@@ -78,11 +92,12 @@ test_web() {
 
 case "${1:-}" in
     "") ;;
+    gltf) test_gltf && exit 0 ;;
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
     cross) test_cross && exit 0 ;;
     web) (test_web) && exit 0 ;;
-    *) die "usage: bash tools/test.sh [gpu | web | packages | cross]" ;;
+    *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14

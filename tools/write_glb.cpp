@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
-#include "tools/little_endian.h"
+#include "tools/glb_file.h"
 #include "tools/plane_write.h"
 #include "tools/stb.h"
 #include "tools/surface_write.h"
@@ -15,9 +16,6 @@ namespace {
 using nlohmann::json;
 
 // Numbers of the glTF specification.
-constexpr uint32_t kMagic = 0x46546C67;
-constexpr uint32_t kJsonChunk = 0x4E4F534A;
-constexpr uint32_t kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126;
 constexpr int kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962;
@@ -88,16 +86,6 @@ std::vector<float> texcoords_for(const DecodedImage& image, const GridMesh& grid
     return uv;
 }
 
-void pad(Bytes& bytes, uint8_t with) {
-    while (bytes.size() % 4 != 0) bytes.push_back(with);
-}
-
-void append_chunk(Bytes& out, uint32_t type, const Bytes& bytes) {
-    append(out, static_cast<uint32_t>(bytes.size()));
-    append(out, type);
-    out.insert(out.end(), bytes.begin(), bytes.end());
-}
-
 json plain_material() {
     return {{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}};
 }
@@ -161,7 +149,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
         if (image.is_relative()) nodes.back()["translation"] = image.origin;
         roots.push_back(i);
     }
-    pad(buffer.bytes, 0);
+    while (buffer.bytes.size() % 4 != 0) buffer.bytes.push_back(0);
 
     json document;
     document["asset"] = {{"version", "2.0"}, {"generator", "gim"}};
@@ -182,21 +170,7 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
     document["accessors"] = buffer.accessors;
     document["bufferViews"] = buffer.views;
     document["buffers"] = json::array({{{"byteLength", buffer.bytes.size()}}});
-    const std::string text = document.dump();
-    Bytes header(text.begin(), text.end());
-    pad(header, ' ');
-
-    const uint64_t size = uint64_t{12} + 8 + header.size() + 8 + buffer.bytes.size();
-    if (size > UINT32_MAX)
-        return Error{Stage::kWrite, "GLB files may have at most 4 GB; choose PLY or a coarser --level"};
-    Bytes out;
-    out.reserve(size);
-    append(out, kMagic);
-    append(out, uint32_t{2});
-    append(out, static_cast<uint32_t>(size));
-    append_chunk(out, kJsonChunk, header);
-    append_chunk(out, kBinaryChunk, buffer.bytes);
-    return out;
+    return glb_bytes(document.dump(), std::move(buffer.bytes));
 }
 
 }  // namespace gim

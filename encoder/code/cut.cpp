@@ -21,6 +21,8 @@ bool is_dropped(ChunkType type, uint32_t level, const CutOptions& options) {
             return options.drop_colors;
         case ChunkType::kDisplacements:
             return options.drop_displacements || level > 0;
+        case ChunkType::kLabels:
+            return options.drop_labels;
         case ChunkType::kText:
             return options.drop_text;
         default:

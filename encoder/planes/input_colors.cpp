@@ -4,26 +4,13 @@
 #include <cmath>
 
 #include "encoder/base/parallel.h"
+#include "encoder/planes/input_triangles.h"
 
 namespace gim {
 
 namespace {
 
 using Color = std::array<float, 3>;
-
-Mesh without_degenerate(const TriangleMesh& mesh, std::vector<uint32_t>* source) {
-    Mesh out;
-    out.positions.reserve(mesh.positions.size());
-    for (const auto& p : mesh.positions) out.positions.emplace_back(p[0], p[1], p[2]);
-    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-        const auto& t = mesh.triangles[f];
-        const Vec3 &a = out.positions[t[0]], &b = out.positions[t[1]], &c = out.positions[t[2]];
-        if (!((b - a).cross(c - a).squaredNorm() > 0)) continue;
-        out.triangles.push_back(t);
-        source->push_back(f);
-    }
-    return out;
-}
 
 // Interpolates bilinearly. Rows and columns repeat.
 Color texel(const TextureImage& image, double u, double v) {
@@ -77,7 +64,7 @@ Result<void> check_appearance(const TriangleMesh& mesh) {
 }
 
 InputColors::InputColors(const TriangleMesh& mesh, uint32_t threads)
-    : mesh_(mesh), tree_(without_degenerate(mesh, &source_), threads), threads_(threads) {}
+    : mesh_(mesh), tree_(triangles_with_area(mesh, &source_), threads), threads_(threads) {}
 
 std::vector<float> InputColors::at(std::span<const Vec3> points) const {
     const std::vector<ClosestPoint> found = tree_.find_all(points, threads_);

@@ -38,6 +38,7 @@ TEST(Conformance, ValidFilesDecodeToTheExpectedBits) {
         EXPECT_EQ(to_bytes(decoded.planes), read_bytes(fs::path(path).replace_extension(".pln")));
         EXPECT_EQ(to_bytes(decoded.details), read_bytes(fs::path(path).replace_extension(".dsp")));
         EXPECT_EQ(to_bytes(decoded.bounds), read_bytes(fs::path(path).replace_extension(".bnd")));
+        EXPECT_EQ(decoded.labels, read_bytes(fs::path(path).replace_extension(".lbl")));
     }
 }
 
@@ -77,6 +78,7 @@ TEST(Conformance, NoDamagedByteChangesTheSurfaceUnnoticed) {
                 ASSERT_EQ(to_bytes(damaged.planes), to_bytes(whole.planes)) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.details), to_bytes(whole.details)) << "byte " << i;
                 ASSERT_EQ(to_bytes(damaged.bounds), to_bytes(whole.bounds)) << "byte " << i;
+                ASSERT_EQ(damaged.labels, whole.labels) << "byte " << i;
             }
             file[i] = kept;
         }

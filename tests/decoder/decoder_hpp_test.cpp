@@ -61,6 +61,23 @@ gim_status decode_planes(Decoder& decoder, uint32_t image, uint32_t kind, test::
     return GIM_OK;
 }
 
+gim_status decode_labels(Decoder& decoder, uint32_t image, test::Decoded* out) {
+    DecoderLevel level;
+    for (uint32_t l = 0; l <= level.coarsest_level; ++l) {
+        if (const gim_status s = decoder.read_level(image, l, &level); s != GIM_OK) return s;
+        gim_labels_info of{};
+        gim_status s = decoder.read_labels(level, &of);
+        if (s == GIM_NO_SUCH_PLANE) return GIM_OK;
+        if (s != GIM_OK) return s;
+        out->prefix = std::max(out->prefix, of.prefix_size);
+        Bytes labels(of.cell_count);
+        s = decoder.labels(level, labels);
+        if (s != GIM_OK) return s;
+        append(labels, &out->labels);
+    }
+    return GIM_OK;
+}
+
 // As test::decode_all, with the C++ header.
 test::Decoded decode_all(Decoder& decoder, const Bytes& file) {
     test::Decoded out;
@@ -71,6 +88,8 @@ test::Decoded decode_all(Decoder& decoder, const Bytes& file) {
         for (uint32_t i = 0; out.status == GIM_OK && i < decoder.info().image_count; ++i)
             out.status = decode_planes(decoder, i, kind, &out);
     }
+    for (uint32_t i = 0; out.status == GIM_OK && i < decoder.info().image_count; ++i)
+        out.status = decode_labels(decoder, i, &out);
     return out;
 }
 
@@ -90,6 +109,7 @@ TEST(DecoderHpp, AllVectorsDecodeAsThroughTheCInterface) {
             EXPECT_EQ(decoded.triangles, expected.triangles);
             EXPECT_EQ(test::to_bytes(decoded.vertices), test::to_bytes(expected.vertices));
             EXPECT_EQ(test::to_bytes(decoded.planes), test::to_bytes(expected.planes));
+            EXPECT_EQ(decoded.labels, expected.labels);
             ++files;
         }
     }

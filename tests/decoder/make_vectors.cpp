@@ -12,6 +12,7 @@
 #include "encoder/code/file_units.h"
 #include "encoder/code/measure_boxes.h"
 #include "encoder/code/wavelet_analysis.h"
+#include "encoder/planes/labels.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/tiles/tile_plane.h"
 #include "encoder/tiles/write_tiles.h"
@@ -259,6 +260,23 @@ Bytes cut_levels(const Bytes& file, uint32_t level) {
     return made.value().bytes;
 }
 
+// Gives the cells of a file labels: rings, with lonely cells of any label.
+Bytes labelled(const Bytes& file, uint32_t cells, uint32_t width) {
+    Random random(cells);
+    Bytes labels;
+    for (uint32_t i = 0; i < cells; ++i) {
+        const uint32_t r = i / width % width, c = i % width;
+        const uint32_t from_side = std::min({r, c, width - 1 - r, width - 1 - c});
+        labels.push_back(static_cast<uint8_t>(random.below(20) == 0 ? random.below(256) : from_side));
+    }
+    auto made = with_labels(file, labels);
+    if (!made.ok()) {
+        std::fprintf(stderr, "labels: %s\n", made.error().message.c_str());
+        std::abort();
+    }
+    return made.value();
+}
+
 Bytes with_boxes(const Bytes& file) {
     auto boxes = measure_boxes(file);
     if (!boxes.ok()) {
@@ -288,6 +306,7 @@ class Writer {
         write_bytes(folder_ / "valid" / (name + ".vtx"), to_bytes(decoded.vertices));
         if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
         if (!decoded.details.empty()) write_bytes(folder_ / "valid" / (name + ".dsp"), to_bytes(decoded.details));
+        if (!decoded.labels.empty()) write_bytes(folder_ / "valid" / (name + ".lbl"), decoded.labels);
         if (!decoded.bounds.empty()) write_bytes(folder_ / "valid" / (name + ".bnd"), to_bytes(decoded.bounds));
     }
     void invalid(const std::string& name, const Bytes& file) {
@@ -472,6 +491,57 @@ void write_valid_tiles(Writer& out) {
     out.valid("tiles-strip-planes", encode_tiles(open, planes));
     planes.planes = {{ChunkType::kDisplacements, tile_plane(small, 2, 4, 30)}};
     out.valid("tiles-genus-2-displaced", encode_tiles(small, planes));
+}
+
+// Labels on squares, with a plane and a text beside them, and on tiles.
+void write_valid_labels(Writer& out) {
+    CodingParameters planes = lossy(12, 9, 30);
+    planes.planes = {{ChunkType::kColors, plane({9}, 6, 20)}};
+    planes.text = "with labels";
+    out.valid("labels-sphere-17", labelled(encode({hill(17, folded_sides(), 0, 15)}, planes), 256, 16));
+    const Bytes two =
+        labelled(encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6)), 1024 + 64, 32);
+    out.valid("labels-two-images", two);
+    const Bytes of_tiles = labelled(encode_tiles(tiles(cube(), 3, 9, 3), lossless(12, 3)), 6 * 64, 8);
+    out.valid("labels-tiles-cube", of_tiles);
+    out.valid("labels-cut-tiles", cut_levels(of_tiles, 2));
+    // A stream without bytes is valid: all labels are 0.
+    out.valid("labels-empty", with_parts(of_tiles, [](Parts& p) { p.payloads.back().clear(); }));
+}
+
+void write_invalid_labels(Writer& out) {
+    const Bytes two =
+        labelled(encode({hill(33, folded_sides(), 2, 11), hill(9, tube(), 2, 12)}, lossy(12, 5, 6)), 1024 + 64, 32);
+    const auto changed = [&](const char* name, const std::function<void(Parts&)>& change) {
+        out.invalid(name, with_parts(two, change));
+    };
+    changed("malformed.labels-critical", [](Parts& p) { p.chunks.back().optional = false; });
+    changed("malformed.labels-zstd", [](Parts& p) {
+        p.chunks.back().zstd = true;
+        p.chunks.back().raw_size = p.payloads.back().size();
+    });
+    changed("malformed.labels-twice", [](Parts& p) { insert_chunk(&p, p.chunks.size(), 6, true, p.payloads.back()); });
+    changed("malformed.labels-before-a-level", [](Parts& p) {
+        Bytes labels = p.payloads.back();
+        remove_chunk(&p, p.chunks.size() - 1);
+        insert_chunk(&p, p.chunks.size() - 1, 6, true, std::move(labels));
+    });
+    changed("malformed.labels-no-sizes", [](Parts& p) { p.payloads.back().clear(); });
+    changed("malformed.labels-byte-left", [](Parts& p) { p.payloads.back().push_back(0); });
+    changed("malformed.labels-byte-missing", [](Parts& p) { p.payloads.back().pop_back(); });
+    out.invalid("malformed.labels-of-charts", with_parts(encode_charts(open_sheet(2), lossless(9, 3)), [](Parts& p) {
+                    insert_chunk(&p, p.chunks.size(), 6, true, {});
+                }));
+    // The smallest level of a very large image: few samples, but 2^28 labels.
+    CodingParameters coarse = lossless(8, 3);
+    out.invalid("limit-exceeded.labels-of-a-cut-file",
+                with_parts(cut_levels(encode({hill(33, open_square(), 0, 1)}, coarse), 3), [](Parts& p) {
+                    const uint8_t more = 14 - p.exponents[0];
+                    p.exponents[0] = 14;
+                    p.header.level_count += more;
+                    p.header.cut_levels += more;
+                    insert_chunk(&p, p.chunks.size(), 6, true, {});
+                }));
 }
 
 void write_invalid_tiles(Writer& out) {
@@ -895,6 +965,7 @@ int main(int argc, char** argv) {
     write_valid(out);
     write_valid_charts(out, kept);
     write_valid_tiles(out);
+    write_valid_labels(out);
     const Bytes plain = encode({hill(5, open_square(), 0, 1)}, lossless(8, 5));
     const Bytes sphere = encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5));
     const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
@@ -907,5 +978,6 @@ int main(int argc, char** argv) {
     write_invalid_borders(out, chart);
     write_invalid_chart_planes(out);
     write_invalid_tiles(out);
+    write_invalid_labels(out);
     return out.fine() ? 0 : 1;
 }

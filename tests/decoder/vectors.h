@@ -15,7 +15,7 @@
 
 namespace gim::test {
 
-// All levels that can be closed of all images, in order, then the planes, then details. Stops at the first failure.
+// All levels that can be closed of all images, in order, then the planes, then details, then labels. Stops at the first failure.
 struct Decoded {
     gim_status status = GIM_OK;
     std::vector<float> samples;       // of gim_decode_grid
@@ -24,6 +24,7 @@ struct Decoded {
     std::vector<float> planes;        // of gim_decode_plane
     std::vector<float> details;       // of gim_open_detailed_domain
     std::vector<float> bounds;        // errors of levels (RMS, maximum), then boxes of images (low, high), if told
+    std::vector<uint8_t> labels;      // of gim_decode_labels
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
 
@@ -116,6 +117,27 @@ inline gim_status decode_details(const gim_info& info, const std::vector<uint8_t
     }
 }
 
+// The labels of one image at all levels from `first` on, if the file has them.
+inline gim_status decode_labels(const gim_info& info, const std::vector<uint8_t>& file, uint32_t image, Decoded* out,
+                                uint32_t first = 0) {
+    gim_level_info l{};
+    for (uint32_t level = first; level <= first || level <= l.coarsest_level; ++level) {
+        gim_labels_info of{};
+        gim_status s = gim_read_labels_info(&info, file.data(), file.size(), image, level, &of);
+        if (s == GIM_NO_SUCH_PLANE) return GIM_OK;
+        if (s == GIM_OK) s = gim_read_level_info(&info, file.data(), file.size(), image, level, &l);
+        if (s == GIM_OK && of.cell_count != l.triangle_count / 2) s = GIM_BAD_ARGUMENT;
+        if (s != GIM_OK) return s;
+        out->prefix = out->prefix > of.prefix_size ? out->prefix : of.prefix_size;
+        std::vector<uint8_t> labels(of.cell_count), scratch(static_cast<size_t>(of.scratch_size));
+        s = gim_decode_labels(&info, file.data(), file.size(), image, level, labels.data(), scratch.data(),
+                              scratch.size());
+        if (s != GIM_OK) return s;
+        out->labels.insert(out->labels.end(), labels.begin(), labels.end());
+    }
+    return GIM_OK;
+}
+
 // What the index tells of errors and boxes. Empty if it tells nothing.
 inline gim_status read_bounds(const gim_info& info, const std::vector<uint8_t>& file, Decoded* out) {
     if (info.level_max_error[0] == 0 && info.has_boxes == 0) return GIM_OK;
@@ -150,6 +172,8 @@ inline Decoded decode_all(const std::vector<uint8_t>& file) {
     for (uint32_t image = 0; out.status == GIM_OK && info.layout != GIM_LAYOUT_MCGIM && image < info.image_count;
          ++image)
         out.status = decode_details(info, file, image, &out);
+    for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
+        out.status = decode_labels(info, file, image, &out);
     return out;
 }
 

@@ -113,6 +113,21 @@ void decode_plane(const gim_info& info, const std::vector<uint8_t>& bytes, uint3
     }
 }
 
+void decode_labels(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t image, uint32_t level) {
+    gim_labels_info of;
+    gim_level_info l;
+    if (gim_read_labels_info(&info, bytes.data(), bytes.size(), image, level, &of) != GIM_OK) return;
+    if (gim_read_level_info(&info, bytes.data(), bytes.size(), image, level, &l) != GIM_OK) __builtin_trap();
+    if (2 * of.cell_count != l.triangle_count || of.prefix_size < l.prefix_size) __builtin_trap();
+    std::vector<uint8_t> labels(of.cell_count), again(labels), scratch(of.scratch_size, 0xFF), clear(of.scratch_size);
+    const gim_status status = gim_decode_labels(&info, bytes.data(), bytes.size(), image, level, labels.data(),
+                                                scratch.data(), scratch.size());
+    if (gim_decode_labels(&info, bytes.data(), bytes.size(), image, level, again.data(), clear.data(), clear.size()) !=
+        status)
+        __builtin_trap();
+    if (status == GIM_OK && labels != again) __builtin_trap();
+}
+
 // Refines over a domain, goes back to the base, and makes clusters.
 void use_domain(const gim_domain* domain, const gim_domain_info& shape) {
     const auto most = static_cast<uint32_t>(std::min<uint64_t>(shape.most_triangles, 2 * shape.tile_count + 500));
@@ -188,6 +203,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         for (uint32_t level = 0; level < info.level_count; ++level) decode(info, bytes, image, level);
     for (uint32_t image = 0; image < info.image_count; ++image)
         for (uint32_t kind = 0; kind < 3; ++kind) decode_plane(info, bytes, image, kind);
+    for (uint32_t image = 0; image < info.image_count; ++image)
+        for (uint32_t level = 0; level < info.level_count; ++level) decode_labels(info, bytes, image, level);
     for (uint32_t image = 0; image < info.image_count; ++image) refine(info, bytes, image);
     uint32_t paths = 0;
     for (uint32_t level = 0; level < info.level_count; ++level)

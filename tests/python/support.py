@@ -45,9 +45,9 @@ def bounds_of(file):
 
 
 def decode_all(data):
-    """Does what tests/decoder/vectors.h does: all levels of all images, then all planes. Returns the arrays by kind."""
+    """Does what tests/decoder/vectors.h does: all levels of all images, then all planes, then labels. Returns the arrays by kind."""
     file = gim.open(data)
-    read = {"f32": [], "tri": [], "vtx": [], "pln": [], "bnd": bounds_of(file)}
+    read = {"f32": [], "tri": [], "vtx": [], "pln": [], "bnd": bounds_of(file), "lbl": []}
     for image in file.images:
         level, last = 0, 0
         while level <= last:
@@ -70,4 +70,10 @@ def decode_all(data):
                     raise
                 continue
             read["pln"] += [image.plane(name, plane.level) for plane in levels]
+    for image in file.images:
+        try:
+            read["lbl"] += [image.labels(level) for level in range(len(image.levels))]
+        except gim.Error as error:
+            if error.status != gim.NO_SUCH_PLANE:
+                raise
     return {kind: b"".join(array.tobytes() for array in arrays) for kind, arrays in read.items()}

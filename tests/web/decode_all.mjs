@@ -33,6 +33,21 @@ function walk(decoder, bytes, limits, visit) {
     for (let image = 0; image < info.imageCount; ++image) levels("planeInfo", { image, plane }, ["decodePlane"]);
 }
 
+// The same for labels, which write_damaged.cpp leaves out.
+function walkLabels(decoder, bytes, visit) {
+  for (let image = 0; image < decoder.info(bytes).imageCount; ++image) {
+    const { coarsestLevel } = decoder.levelInfo(bytes, { image });
+    for (let level = 0; level <= coarsestLevel; ++level) {
+      try {
+        visit(decoder.decodeLabels(bytes, { image, level }));
+      } catch (error) {
+        if (typeof error.status !== "number") throw error;
+        return visit(error);
+      }
+    }
+  }
+}
+
 const isNaNWord = (word) => (word & 0x7fffffff) > 0x7f800000;
 
 // The hash of write_damaged.cpp.
@@ -55,9 +70,9 @@ export function hashOf(decoder, bytes) {
   return hash >>> 0;
 }
 
-// What spec/vectors/README.md says of a file: { status, f32, tri, vtx, pln }, arrays of typed arrays.
+// What spec/vectors/README.md says of a file: { status, f32, tri, vtx, pln, lbl }, arrays of typed arrays.
 export function vectorsOf(decoder, bytes) {
-  const found = { status: "OK", f32: [], tri: [], vtx: [], pln: [] };
+  const found = { status: "OK", f32: [], tri: [], vtx: [], pln: [], lbl: [] };
   walk(decoder, bytes, {}, (what, made) => {
     if (found.status !== "OK") return;
     if (made instanceof Error) {
@@ -71,17 +86,23 @@ export function vectorsOf(decoder, bytes) {
       found.pln.push(made.values);
     }
   });
+  if (found.status !== "OK") return found;
+  walkLabels(decoder, bytes, (made) => {
+    if (!(made instanceof Error)) found.lbl.push(made);
+    else if (made.statusName !== "NO_SUCH_PLANE") found.status = made.statusName;
+  });
   return found;
 }
 
 // Compares arrays with the bytes of a vector, an ArrayBuffer. Returns what differs, or "".
 export function differsFrom(arrays, expected) {
-  const wanted = new Uint32Array(expected);
+  const isBytes = arrays[0] instanceof Uint8Array;
+  const wanted = isBytes ? new Uint8Array(expected) : new Uint32Array(expected);
   const length = arrays.reduce((sum, array) => sum + array.length, 0);
   if (length !== wanted.length) return `${length} numbers instead of ${wanted.length}`;
   let at = 0;
   for (const array of arrays) {
-    const words = new Uint32Array(array.buffer, array.byteOffset, array.length);
+    const words = isBytes ? array : new Uint32Array(array.buffer, array.byteOffset, array.length);
     for (const word of words) {
       const other = wanted[at++];
       if (word !== other && !(array instanceof Float32Array && isNaNWord(word) && isNaNWord(other)))

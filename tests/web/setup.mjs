@@ -25,7 +25,7 @@ export function vectorNames() {
   return {
     valid: withoutExtension(valid).map((name) => ({
       name,
-      extensions: ["f32", "tri", "vtx", "pln"].filter((e) => valid.includes(`${name}.${e}`)),
+      extensions: ["f32", "tri", "vtx", "pln", "lbl"].filter((e) => valid.includes(`${name}.${e}`)),
     })),
     invalid: withoutExtension(list("invalid")),
   };

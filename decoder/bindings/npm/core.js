@@ -90,7 +90,7 @@ export function makeCore(wasm, fail) {
     for (let i = 0; i < count; ++i) {
       check(wasm.gim_js_chunk(file.session, file.at, indexSize, i));
       const chunk = record(file, ["name", "level", "offset", "size"]);
-      chunk.name = ["SEAM", "LEVL", "META", "NRML", "COLR", "DISP"][chunk.name] || "????";
+      chunk.name = ["SEAM", "LEVL", "META", "NRML", "COLR", "DISP", "LABL"][chunk.name] || "????";
       found.push(chunk);
     }
     return found;
@@ -152,6 +152,18 @@ export function makeCore(wasm, fail) {
     );
     return { width: level.width, height: level.height, values: floats(values, level.width * level.height * 3) };
   }
+  function labelsInfo(file) {
+    check(wasm.gim_js_labels(file.session, file.at, file.size, file.image, file.level));
+    return record(file, ["cellCount", "prefixSize", "scratchSize"]);
+  }
+  function labels(file) {
+    const { cellCount, scratchSize } = labelsInfo(file), values = take(cellCount), scratch = take(scratchSize);
+    check(
+      wasm.gim_decode_labels(file.session + infoAt, file.at, file.size, file.image, file.level, values, scratch,
+        scratchSize),
+    );
+    return new Uint8Array(wasm.memory.buffer, values, cellCount).slice();
+  }
   function seams(file) {
     const { side } = levelInfo(file);
     const ring = side ? 4 * (side - 1) : 0, classOf = ring ? take(ring * 4) : 0, paths = take(4);
@@ -172,7 +184,7 @@ export function makeCore(wasm, fail) {
   }
 
   const requests = {
-    info, box, chunks, chooseLevel, levelInfo, planeInfo, plane, seams, text,
+    info, box, chunks, chooseLevel, levelInfo, planeInfo, plane, labelsInfo, labels, seams, text,
     mesh: (file, request) => surface(file, request, "mesh"),
     hardMesh: (file, request) => surface(file, request, "hardMesh"),
     grid: (file, request) => surface(file, request, "grid"),

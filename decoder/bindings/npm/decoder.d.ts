@@ -203,6 +203,13 @@ export interface GimPlane {
   values: Float32Array;
 }
 
+/** How many labels a level has, and how many bytes of the file, from its start, they need. */
+export interface GimLabelsInfo {
+  cellCount: number;
+  prefixSize: number;
+  scratchSize: number;
+}
+
 export interface GimSeams {
   /** Layout gim: 4 (side - 1) numbers, one per sample of the rim; samples of one surface point have equal ones. Else null. */
   classOf: Uint32Array | null;
@@ -248,6 +255,10 @@ export interface GimDecoderType {
   decodeGrid(bytes: GimBytes, options?: GimSurfaceOptions): GimGrid;
   /** Normals, colours or displacements, on a grid of their own resolution. */
   decodePlane(bytes: GimBytes, options: GimPlaneOptions): GimPlane;
+  /** NO_SUCH_PLANE if the file has no labels: then all cells are alike. */
+  labelsInfo(bytes: GimBytes, options?: GimLevelOptions): GimLabelsInfo;
+  /** Which part of the surface, for example which material, each cell belongs to: label i is that of triangles 2i and 2i+1. */
+  decodeLabels(bytes: GimBytes, options?: GimLevelOptions): Uint8Array;
   /** How the rim of an image is glued, for tools. */
   readSeams(bytes: GimBytes, options?: GimLevelOptions): GimSeams;
   /** What the file says about itself; "" if nothing. Text that was compressed is refused with UNSUPPORTED_VERSION. */

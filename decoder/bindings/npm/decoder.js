@@ -34,6 +34,8 @@ export const GimDecoder = {
   decodeHardMesh: call("hardMesh"),
   decodeGrid: call("grid"),
   decodePlane: call("plane"),
+  labelsInfo: call("labelsInfo"),
+  decodeLabels: call("labels"),
   readSeams: call("seams"),
   readText: call("text"),
   useWorkers(count) {

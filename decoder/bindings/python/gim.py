@@ -83,6 +83,10 @@ class _PlaneInfo(ctypes.Structure):  # gim_plane_info
                 ("stream_size", _u64), ("prefix_size", _u64), ("scratch_size", _u64)]
 
 
+class _LabelsInfo(ctypes.Structure):  # gim_labels_info
+    _fields_ = [("cell_count", _u32), ("scratch_size", _u64), ("prefix_size", _u64)]
+
+
 def _load_library():
     name = os.environ.get("GIM_LIBRARY") or "libgim-decoder.so.0"
     try:
@@ -103,6 +107,8 @@ def _load_library():
         "gim_read_box": file + [_u32, pointer],
         "gim_read_plane_info": file + [_u32, _u32, _u32, pointer],
         "gim_decode_plane": file + [_u32, _u32, _u32, pointer] + scratch,
+        "gim_read_labels_info": file + [_u32, _u32, pointer],
+        "gim_decode_labels": file + [_u32, _u32, pointer] + scratch,
         "gim_read_text": file + [pointer, size, pointer] + scratch,
     }
     for function, types in arguments.items():
@@ -416,6 +422,15 @@ class Image:
         decode = lambda *a: _lib.gim_decode_plane(*a[:4], _plane_kind(name), *a[4:])
         self._decode(decode, level, budget, read.scratch_size, _address(values))
         return values
+
+    def labels(self, level=0):
+        """Decodes the label of each cell, for example its material: uint8, one for every two faces of mesh(level) or
+        grid(level, faces=True). Raises gim.Error with gim.NO_SUCH_PLANE if the file has none."""
+        budget, read = _Budget(self._file._limits), _LabelsInfo()
+        _check(_lib.gim_read_labels_info(*self._file._arguments, self._index, _number(level), ctypes.byref(read)))
+        labels = budget.array((read.cell_count,), np.uint8)
+        self._decode(_lib.gim_decode_labels, level, budget, read.scratch_size, _address(labels))
+        return labels
 
 
 class File:

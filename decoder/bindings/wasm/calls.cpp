@@ -97,4 +97,11 @@ gim_status gim_js_plane(Session* session, const void* bytes, size_t size, uint32
                          info.prefix_size, info.scratch_size);
     return status;
 }
+
+gim_status gim_js_labels(Session* session, const void* bytes, size_t size, uint32_t image, uint32_t level) {
+    gim_labels_info info;
+    const gim_status status = gim_read_labels_info(&session->info, bytes, size, image, level, &info);
+    if (status == GIM_OK) Row(session).add(info.cell_count, info.prefix_size, info.scratch_size);
+    return status;
+}
 }

@@ -225,6 +225,26 @@ GIM_API gim_status gim_read_plane_info(const gim_info* info, const void* bytes, 
 GIM_API gim_status gim_decode_plane(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t kind,
                                     uint32_t level, float* values, void* scratch, size_t scratch_size);
 
+/* Labels say which part of a surface a cell belongs to, for example which material it has. A cell is two triangles: label
+ * i is that of triangles 2i and 2i+1 of gim_decode_mesh, gim_decode_hard_mesh and gim_decode_grid. Borders between labels
+ * are edges of the mesh, so parts fit together without cracks. GIM_LAYOUT_MCGIM has none. */
+typedef struct gim_labels_info {
+    uint32_t cell_count;   /* of this level: half its triangle_count */
+    uint64_t scratch_size; /* bytes of scratch that gim_decode_labels needs */
+    uint64_t prefix_size;  /* bytes of the file, from its start, that labels need: more than the level does */
+} gim_labels_info;
+
+/* level: as in gim_decode_mesh. Returns GIM_NO_SUCH_PLANE if the file has no labels: then all cells are alike. Reads the
+ * index and the chunk of seams. Cost as gim_read_level_info. */
+GIM_API gim_status gim_read_labels_info(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                        uint32_t level, gim_labels_info* labels_info);
+
+/* labels: cell_count bytes. A coarse cell has the label of the finest cell behind its middle. scratch: scratch_size bytes of
+ * any alignment. Needs the level's seams and the labels, but no positions. On failure labels are unspecified. Cost O(cells
+ * of level 0, before the file was cut). */
+GIM_API gim_status gim_decode_labels(const gim_info* info, const void* bytes, size_t size, uint32_t image,
+                                     uint32_t level, uint8_t* labels, void* scratch, size_t scratch_size);
+
 /* Describes chunk i of the index, for tools. Returns GIM_BAD_ARGUMENT past the last chunk. */
 typedef struct gim_chunk {
     char name[8];  /* zero-terminated, as in the spec; "????" if this reader does not know it */

@@ -144,6 +144,20 @@ class Decoder {
                                 scratch_.data(), scratch_.size());
     }
 
+    // Returns GIM_NO_SUCH_PLANE if the file has no labels.
+    gim_status read_labels(const DecoderLevel& level, gim_labels_info* out) const noexcept {
+        return gim_read_labels_info(&info_, bytes_.data(), bytes_.size(), level.image, level.level, out);
+    }
+    // out: triangle_count / 2 labels. Returns GIM_BAD_ARGUMENT on any other size.
+    gim_status labels(const DecoderLevel& level, std::span<std::uint8_t> out) noexcept {
+        gim_labels_info of{};
+        if (const gim_status status = read_labels(level, &of); status != GIM_OK) return status;
+        if (out.empty() || out.size() != of.cell_count) return GIM_BAD_ARGUMENT;
+        if (!scratch_.reserve(of.scratch_size)) return GIM_SCRATCH_TOO_SMALL;
+        return gim_decode_labels(&info_, bytes_.data(), bytes_.size(), level.image, level.level, out.data(),
+                                 scratch_.data(), scratch_.size());
+    }
+
     gim_status read_chunk(std::uint32_t i, gim_chunk* chunk) const noexcept {
         return gim_read_chunk(&info_, bytes_.data(), bytes_.size(), i, chunk);
     }

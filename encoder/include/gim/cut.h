@@ -14,7 +14,7 @@ struct CutOptions {
     uint32_t level = 0;                  // the finest level to keep
     std::optional<uint64_t> most_bytes;  // if set: the finest level from `level` on that fits into so many bytes
     // What to leave out. A cut that drops levels leaves out displacements too: they lie on the finest level.
-    bool drop_normals = false, drop_colors = false, drop_displacements = false, drop_text = false;
+    bool drop_normals = false, drop_colors = false, drop_displacements = false, drop_labels = false, drop_text = false;
 };
 
 struct CutFile {

@@ -97,6 +97,9 @@ struct TriangleMesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     Appearance appearance = {};
     Shading shading = {};
+    // A label 0..255 for each triangle, for example its material; or empty. A file keeps it for each of its cells (gim/decoder.h,
+    // "Labels") if there are two different ones. Not of kMcgim.
+    std::vector<uint8_t> labels = {};
 };
 
 // Called at the start of each stage and during long stages. `fraction` is 0..1 within the stage. Calls never overlap.

@@ -54,6 +54,8 @@ test::Decoded decode_from(const Bytes& file, uint32_t level) {
     for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS})
         for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
             out.status = test::decode_plane(info, file, image, kind, &out);
+    for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
+        out.status = test::decode_labels(info, file, image, &out, level);
     return out;
 }
 
@@ -85,6 +87,7 @@ TEST(CutFile, EveryLevelOfEveryVectorKeepsItsBits) {
             EXPECT_EQ(decoded.triangles, expected.triangles);
             EXPECT_EQ(test::to_bytes(decoded.vertices), test::to_bytes(expected.vertices));
             EXPECT_EQ(test::to_bytes(decoded.planes), test::to_bytes(expected.planes));
+            EXPECT_EQ(decoded.labels, expected.labels);
         }
     }
     EXPECT_GT(cuts, 40u);
