@@ -21,7 +21,7 @@ compile() {
     local how=(-flto -Oz -DGIM_SMALL_CODE)
     case $1 in
         decoder/pyramid/rows.cpp | decoder/pyramid/band_decoder.cpp | decoder/pyramid/synthesis.cpp | \
-            format/expectation.cpp | format/lift_tiles.cpp) how=(-flto -O2 -fno-unroll-loops) ;;
+            decoder/tiles/tile_surface.cpp | format/expectation.cpp | format/lift_tiles.cpp) how=(-flto -O2 -fno-unroll-loops) ;;
         */memory.cpp) how=(-fno-builtin -Oz) ;;
     esac
     clang++-14 --target=wasm32-wasi -msimd128 -std=c++20 "${how[@]}" -ffp-contract=off -fno-exceptions -fno-rtti \
