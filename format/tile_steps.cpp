@@ -3,40 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "format/lift_tiles.h"
 #include "format/tile_lifting.h"
 
 namespace gim {
 namespace {
-
-template <class Lift, class Sample>
-void lift_row(const Lift& lift, Sample* __restrict to, const Sample* a, const Sample* b, size_t count) {
-    for (size_t i = 0; i < count; ++i) to[i] = lift(to[i], a[i], b[i]);
-}
-
-template <class Lift>
-void lift_rows(const LiftStep& step, void* samples, const RowBlock& block) {
-    using Sample = typename Lift::Sample;
-    const Lift lift(step);
-    auto* s = static_cast<Sample*>(samples);
-    for (uint32_t row = 0; row < block.rows; ++row) {
-        const Sample *a = s + block.a.at(row), *b = s + block.b.at(row);
-        lift_row(lift, s + block.target.at(row), a, b, block.count);
-    }
-}
-
-template <class Lift>
-void lift_run(const LiftStep& step, void* samples, const EdgeRun& run) {
-    const Lift lift(step);
-    auto* s = static_cast<typename Lift::Sample*>(samples);
-    for (uint32_t i = 0; i < run.count; ++i) {
-        auto *own = s + run.target.at(i), *copy = s + run.copy.at(i);
-        const auto *a = s + run.a.at(i), *b = s + run.b.at(i);
-        for (size_t k = 0; k < 3; ++k) {
-            own[k] = lift(own[k], a[k], b[k]);
-            if (run.has_copy) copy[k] = own[k];
-        }
-    }
-}
 
 // What is added depends on the order of half-edges alone.
 template <class Lift>
@@ -75,14 +46,13 @@ void lift_vertices(const LiftStep& step, const QuadComplex& complex, const TileP
 
 }  // namespace
 
-const TileArithmetic kTiles53 = {Reversible53::kSteps,      nullptr, 1, lift_rows<LiftInteger>, lift_run<LiftInteger>,
-                                 lift_vertices<LiftInteger>};
-const TileArithmetic kTiles97 = {Irreversible97::kSteps,   Irreversible97::kFactor.data(),
-                                 Irreversible97::kLowGain, lift_rows<LiftFloat>,
-                                 lift_run<LiftFloat>,      lift_vertices<LiftFloat>};
+const TileArithmetic kTiles53 = {
+    Reversible53::kSteps, nullptr, 1, lift_tile_rows<LiftInteger>, lift_edge<LiftInteger>, lift_vertices<LiftInteger>};
+const TileArithmetic kTiles97 = {Irreversible97::kSteps,    Irreversible97::kFactor.data(), Irreversible97::kLowGain,
+                                 lift_tile_rows<LiftFloat>, lift_edge<LiftFloat>,           lift_vertices<LiftFloat>};
 const TileArithmetic kTilesSharp = {Irreversible53::kSteps,   Irreversible53::kFactor.data(),
-                                    Irreversible53::kLowGain, lift_rows<LiftFloat>,
-                                    lift_run<LiftFloat>,      lift_vertices<LiftFloat>};
+                                    Irreversible53::kLowGain, lift_tile_rows<LiftFloat>,
+                                    lift_edge<LiftFloat>,     lift_vertices<LiftFloat>};
 
 void TileSteps::synthesize() {
     share_details();

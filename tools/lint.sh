@@ -14,6 +14,7 @@ declare -A may_include=(
     [decoder/charts]="format decoder/pyramid decoder/layout"
     [decoder/tiles]="format decoder/pyramid decoder/layout"
     [decoder/refine]="format decoder/pyramid decoder/layout"
+    [decoder/bindings/wasm]="format decoder"
     [decoder]="format decoder/pyramid decoder/layout decoder/squares decoder/charts decoder/tiles decoder/refine"
     [decoder/bindings/wasm]="format decoder"
     [encoder/base]=""

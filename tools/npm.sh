@@ -18,10 +18,10 @@ sources_of() {
 
 # compile SOURCE OBJECT. Where the time goes, for speed; the rest for size.
 compile() {
-    local how=(-flto -Oz)
+    local how=(-flto -Oz -DGIM_SMALL_CODE)
     case $1 in
         decoder/pyramid/rows.cpp | decoder/pyramid/band_decoder.cpp | decoder/pyramid/synthesis.cpp | \
-            format/expectation.cpp | format/tile_steps.cpp) how=(-flto -O2 -fno-unroll-loops) ;;
+            decoder/tiles/tile_surface.cpp | format/expectation.cpp | format/lift_tiles.cpp) how=(-flto -O2 -fno-unroll-loops) ;;
         */memory.cpp) how=(-fno-builtin -Oz) ;;
     esac
     clang++-14 --target=wasm32-wasi -msimd128 -std=c++20 "${how[@]}" -ffp-contract=off -fno-exceptions -fno-rtti \
@@ -52,6 +52,10 @@ build_wasm() {
 bundle() {
     esbuild "$BINDINGS/npm/$1.js" --bundle --minify --target=es2020 --log-level=warning --charset=ascii \
         --alias:gim-wasm="./$WORK/$1_wasm.js" --format="$2" --outfile="$PACKAGE/$1.$3"
+    # The module on a line of its own: traces of errors quote whole lines.
+    node -e 'const fs = require("fs"), file = process.argv[1], script = fs.readFileSync(file, "utf8");
+        const module = script.match(/"[^"]*"/g).reduce((a, b) => (b.length > a.length ? b : a));
+        fs.writeFileSync(file, script.split(module).join("\n" + module + "\n"));' "$PACKAGE/$1.$3"
 }
 
 # bundle_around_decoder NAME: both scripts of an entry that calls gim/decoder. All entries of a page share one decoder.

@@ -23,12 +23,18 @@ case "${1:-}" in
     *) die "usage: bash tools/package.sh [--twice | --from FOLDER]" ;;
 esac
 
-# copy_tree FOLDER: the tracked files as they are, with tools/debian as debian/.
+# copy_tree FOLDER: the tracked files as they are, with tools/debian as debian/, and the page of gim view if it is built.
 copy_tree() {
     rm -rf "$1"
     mkdir -p "$1"
     (cd "$GIM_ROOT" && git ls-files -z | tar -c --null --files-from=- --ignore-failed-read) | tar -x -C "$1"
     cp -a "$1/tools/debian" "$1/debian"
+    if [ -d "$GIM_ROOT/build/viewer" ]; then
+        mkdir "$1/build"
+        cp -a "$GIM_ROOT/build/viewer" "$1/build"
+    else
+        say "The page of gim view is not in the packages: tools/viewer/build.sh has not built it"
+    fi
 }
 
 # prepare FOLDER NAME: an empty folder with the tree NAME.

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "format/inline.h"
+
 namespace gim {
 
 // A number of an image: the bits of an int32_t or of a float. One image has one kind.
@@ -22,15 +24,15 @@ class RowLifting {
     int low_step(int i) const { return 2 * (pairs() - i) - 1; }
 
     // target[i] from a[i] and b[i]. No two arrays overlap, but a and b may.
-    void undo(int step, Number* target, const Number* a, const Number* b, size_t count) const;
+    GIM_NEVER_INLINE void undo(int step, Number* target, const Number* a, const Number* b, size_t count) const;
     // low[i] from high[i] and next_high[i] by an odd step, then high[i] from previous_low[i] and low[i] by the step before
     // it. The arrays do not overlap.
-    void undo_pair(int step, Number* low, Number* high, const Number* next_high, const Number* previous_low,
-                   size_t count) const;
+    GIM_NEVER_INLINE void undo_pair(int step, Number* low, Number* high, const Number* next_high,
+                                    const Number* previous_low, size_t count) const;
     // The odd step on low samples that are kept (format/lifting.h, lift_end).
-    void undo_end(int step, Number* low, size_t count) const;
+    GIM_NEVER_INLINE void undo_end(int step, Number* low, size_t count) const;
     // Low samples of a coarser image as those of this one.
-    void load_low(const Number* from, size_t count, Number* to) const;
+    GIM_NEVER_INLINE void load_low(const Number* from, size_t count, Number* to) const;
 
   private:
     bool integers_;
@@ -44,16 +46,17 @@ inline bool any_of(const int32_t* values, size_t count) {
 }
 
 // Floats from quantized ones.
-void dequantize_row(const int32_t* values, size_t count, float step, float* floats);
+GIM_NEVER_INLINE void dequantize_row(const int32_t* values, size_t count, float step, float* floats);
 
 // Writes low and high triples in turn: as many low ones as high ones, or one more. There is room for a triple behind each.
-void interleave(size_t lows, size_t highs, const Number* low, const Number* high, Number* row);
+GIM_NEVER_INLINE void interleave(size_t lows, size_t highs, const Number* low, const Number* high, Number* row);
 
 // Turns the numbers of an image into floats within +-kLargestUnit, in place. A NaN becomes the least.
 inline constexpr float kLargestUnit = 0x1p22f;  // encoders stay well below; keeps all later arithmetic finite
-float* to_units(bool integers, void* numbers, size_t count);
+GIM_NEVER_INLINE float* to_units(bool integers, void* numbers, size_t count);
 
 // Turns `count` triples from units into object space.
-void to_object(const std::array<float, 3>& origin, float step, const float* units, float* positions, size_t count = 1);
+GIM_NEVER_INLINE void to_object(const std::array<float, 3>& origin, float step, const float* units, float* positions,
+                                size_t count = 1);
 
 }  // namespace gim

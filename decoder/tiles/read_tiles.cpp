@@ -156,12 +156,12 @@ Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, c
                 texcoords.set(tile, at / width, at % width, out.texcoords + 2 * (size_t{vertex} + i));
             }
         });
-        const auto finish = [&](const auto& numbers, uint32_t count) {
+        const auto finish = [&](const TileNumbers& numbers, uint32_t count) {
             if (out.normals) tile_normals(surface, numbers, count, ws.triangulate.numbers, out.normals);
             if (out.triangles) triangulate_tiles(surface, ws.triangulate, numbers, out.triangles);
         };
-        if (!out.hard_vertices || !ws.tiles.is_sharp)
-            return finish(MeshNumbers{surface.numbers(), surface.side}, surface.numbers().count());
+        const MeshNumbers shared = {surface.numbers(), surface.side};
+        if (!out.hard_vertices || !ws.tiles.is_sharp) return finish(TileNumbers(shared), surface.numbers().count());
         const HardVertices hard =
             split_sharp_edges(surface, ws.tiles.is_sharp, ws.tiles.quad_code.next, ws.tiles.quad_code.previous);
         for_each_copy(hard, [&](uint32_t vertex, uint32_t tile, uint32_t sample) {
@@ -170,7 +170,7 @@ Status decode_tile_mesh(const LevelRequest& request, const SurfaceArrays& out, c
             if (out.texcoords) texcoords.set(tile, sample / width, sample % width, out.texcoords + 2 * size_t{vertex});
         });
         *out.hard_vertices = hard.count;
-        finish(hard, hard.count);
+        finish(TileNumbers(hard), hard.count);
     });
 }
 
@@ -186,7 +186,8 @@ Status decode_tile_grid(const LevelRequest& request, const SurfaceArrays& out, c
         if (out.normals) std::fill_n(out.normals, 3 * count, 0.0f);
         if (out.texcoords) std::fill_n(out.texcoords, 2 * count, 0.0f);
         const MeshNumbers vertices = {surface.numbers(), surface.side};
-        if (out.normals) tile_normals(surface, vertices, surface.numbers().count(), ws.triangulate.numbers, spare);
+        if (out.normals)
+            tile_normals(surface, TileNumbers(vertices), surface.numbers().count(), ws.triangulate.numbers, spare);
         for (uint32_t t = 0; t < surface.complex.tiles; ++t) {
             for (uint32_t row = 0; row < width; ++row) {
                 const float* samples = surface.samples + 3 * (t * surface.tile_size() + row * width);
@@ -203,7 +204,8 @@ Status decode_tile_grid(const LevelRequest& request, const SurfaceArrays& out, c
                 }
             }
         }
-        if (out.triangles) triangulate_tiles(surface, ws.triangulate, GridNumbers{atlas, surface.side}, out.triangles);
+        if (out.triangles)
+            triangulate_tiles(surface, ws.triangulate, TileNumbers(GridNumbers{atlas, surface.side}), out.triangles);
     });
 }
 

@@ -5,12 +5,10 @@
 
 #include "decoder/pyramid/cells.h"
 #include "decoder/pyramid/vector3.h"
-#include "decoder/tiles/hard_vertices.h"
 
 namespace gim {
 
-template <class Numbers>
-void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& work, const Numbers& numbers,
+void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& work, const TileNumbers& numbers,
                        uint32_t* triangles) {
     const uint32_t side = surface.side, last = side - 1;
     const size_t width = size_t{side} + 1;
@@ -36,12 +34,8 @@ void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& w
     }
 }
 
-template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const MeshNumbers&, uint32_t*);
-template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const HardVertices&, uint32_t*);
-template void triangulate_tiles(const TileSurface&, const TriangulateTilesWork&, const GridNumbers&, uint32_t*);
-
-template <class Numbers>
-void tile_normals(const TileSurface& surface, const Numbers& numbers, uint32_t count, uint32_t* row, float* normals) {
+void tile_normals(const TileSurface& surface, const TileNumbers& numbers, uint32_t count, uint32_t* row,
+                  float* normals) {
     const uint32_t side = surface.side;
     const size_t width = 3 * (size_t{side} + 1);
     std::fill_n(normals, 3 * size_t{count}, 0.0f);
@@ -67,8 +61,5 @@ void tile_normals(const TileSurface& surface, const Numbers& numbers, uint32_t c
     }
     for (size_t i = 0; i < count; ++i) normalize(normals + 3 * i);
 }
-
-template void tile_normals(const TileSurface&, const MeshNumbers&, uint32_t, uint32_t*, float*);
-template void tile_normals(const TileSurface&, const HardVertices&, uint32_t, uint32_t*, float*);
 
 }  // namespace gim

@@ -73,14 +73,28 @@ struct GridNumbers {
     }
 };
 
+// Any of these, or HardVertices, whose load() is behind a pointer. It refers to them.
+class TileNumbers {
+  public:
+    template <class Numbers>
+    explicit TileNumbers(const Numbers& numbers)
+        : numbers_(&numbers), load_([](const void* of, uint32_t tile, uint32_t row, uint32_t* out) {
+              static_cast<const Numbers*>(of)->load(tile, row, out);
+          }) {}
+    void load(uint32_t tile, uint32_t row, uint32_t* numbers) const { load_(numbers_, tile, row, numbers); }
+
+  private:
+    const void* numbers_;
+    void (*load_)(const void* of, uint32_t tile, uint32_t row, uint32_t* out);
+};
+
 // Writes 2 * tiles * side^2 triangles, tile by tile, cell by cell.
-template <class Numbers>
-void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& work, const Numbers& numbers,
+void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& work, const TileNumbers& numbers,
                        uint32_t* triangles);
 
 // Sets the unit normals of `count` vertices: the cross products of differences within each tile, central ones or
 // one-sided at its border, summed over the tiles; zero if the sum is. row: side + 1 numbers, work space.
-template <class Numbers>
-void tile_normals(const TileSurface& surface, const Numbers& numbers, uint32_t count, uint32_t* row, float* normals);
+void tile_normals(const TileSurface& surface, const TileNumbers& numbers, uint32_t count, uint32_t* row,
+                  float* normals);
 
 }  // namespace gim

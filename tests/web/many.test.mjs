@@ -1,26 +1,27 @@
 // A page with 100 different files, levels chosen by the camera, and a budget of memory.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { availableParallelism, tmpdir } from "node:os";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpus, tmpdir } from "node:os";
 import { join } from "node:path";
 import { launchWithWebGl, makePage } from "./browser.mjs";
+import { scaledFile } from "./made_files.mjs";
 import { ball, encoded, withoutProgram } from "./meshes.mjs";
 import { noBrowser, serve } from "./setup.mjs";
 
 const skip = noBrowser || withoutProgram;
-const count = 100;
+const shapes = 25, scales = [1, 0.9, 0.8, 0.7], count = shapes * scales.length;
 let folder, served, browser;
 
-// Encodes in as many processes as there are cores.
+// Encodes shapes in as many processes as there are cores. Each becomes files of several sizes.
 async function encodeAll() {
   const files = [];
   let i = 0;
   const work = async () => {
-    for (let seed; (seed = i++) < count; )
+    for (let seed; (seed = i++) < shapes; )
       files[seed] = await encoded(`many-${seed}`, () => ball(12, 20, seed), "--size", "33", "--node-side", "9", "--threads", "1");
   };
-  await Promise.all(Array.from({ length: availableParallelism?.() ?? 2 }, work));
+  await Promise.all(Array.from({ length: cpus().length }, work));
   return files;
 }
 
@@ -28,7 +29,8 @@ before(async () => {
   if (skip) return;
   folder = mkdtempSync(join(tmpdir(), "gim-many-"));
   const files = await encodeAll();
-  files.forEach((file, i) => copyFileSync(file, join(folder, `${i}.gim`)));
+  files.flatMap((file) => scales.map((scale) => scaledFile(readFileSync(file), scale)))
+    .forEach((bytes, i) => writeFileSync(join(folder, `${i}.gim`), bytes));
   makePage("many", folder);
   served = await serve({ "": folder });
   browser = await launchWithWebGl();

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { startNginx, withoutNginx } from "./nginx.mjs";
 import { importEntry, vector } from "./setup.mjs";
-import { longFile } from "./long_file.mjs";
+import { longFile } from "./made_files.mjs";
 
 const { GimDecoder } = await importEntry("decoder");
 const { GimSource, GimSourceError } = await importEntry("source");

@@ -4,7 +4,7 @@ import { after, test } from "node:test";
 import { createServer } from "node:http";
 import { gzipSync } from "node:zlib";
 import { importEntry, vector } from "./setup.mjs";
-import { longFile } from "./long_file.mjs";
+import { longFile } from "./made_files.mjs";
 
 const { GimDecoder } = await importEntry("decoder");
 const { GimSource } = await importEntry("source");

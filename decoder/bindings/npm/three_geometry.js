@@ -36,11 +36,12 @@ export function geometrySize(images, level) {
   return vertices * 32 + triangles * (vertices > 65535 ? 12 : 6);
 }
 
-// Decodes images at a level of the file, small ones at once. options: limits, and signal.
-export async function decodeParts(bytes, images, level, kind, { signal, ...limits }) {
+// Decodes images at a level of the file. options: limits, signal, and whether small ones are decoded at once. Others take
+// their turns, so that many meshes do not hold up a frame.
+export async function decodeParts(bytes, images, level, kind, { signal, atOnce = true, ...limits }) {
   const decode = async (image) => {
     const own = levelOf(image, level), request = { ...limits, image: image.image, level: own };
-    const isSmall = image.levels[own].triangles <= smallTriangles;
+    const isSmall = atOnce && image.levels[own].triangles <= smallTriangles;
     const now = kind === "grid" ? GimDecoder.decodeGrid : GimDecoder.decodeHardMesh;
     const mesh = isSmall ? now(bytes, request) : await GimDecoder.decodeAsync(kind, bytes, { ...request, signal });
     return { level: own, image: image.image, ...(kind === "grid" ? withoutHoles(mesh) : mesh) };

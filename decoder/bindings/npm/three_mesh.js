@@ -162,7 +162,8 @@ export class GIMMesh extends Mesh {
     try {
       const bytes = source.bytes;
       const here = this.images.filter((image) => image.levels[levelOf(image, level)].end <= bytes.length);
-      const parts = await decodeParts(bytes, here, level, this.kind, { ...this.limits, signal });
+      const how = { ...this.limits, signal, atOnce: this.level === none };
+      const parts = await decodeParts(bytes, here, level, this.kind, how);
       if (this.isDisposed) return false;
       this.isPartial = here.length < this.images.length;
       this.show(makeGeometry(parts, source.info, level), level);

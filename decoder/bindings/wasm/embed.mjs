@@ -1,10 +1,25 @@
-// node embed.mjs IN.wasm OUT.js: writes a module whose makeBytes() returns the bytes of IN.wasm.
-// They are ASCII text that compresses as well as the bytes do, within 3 percent: base64 would break up what repeats. The
-// frequent bytes are one character each, the others two.
+// node embed.mjs IN.wasm OUT.js: writes a script whose makeBytes() returns the bytes of IN.wasm. They are ASCII text that
+// compresses well: base64 would break up what repeats. The module is taken apart first (decoder/bindings/npm/module.js);
+// then the frequent bytes are one character each, the others two.
 import { readFileSync, writeFileSync } from "node:fs";
+import { dirname, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+import { STREAMS, join, traverse } from "../npm/module.js";
 
 const [input, output] = process.argv.slice(2);
-const bytes = readFileSync(input);
+const moduleScript = relative(dirname(output), fileURLToPath(new URL("../npm/module.js", import.meta.url)));
+const module = readFileSync(input);
+
+const streams = Array.from({ length: STREAMS }, () => []);
+let from = 0;
+const take = (stream) => {
+  streams[stream].push(module[from]);
+  return module[from++];
+};
+traverse(take, () => from < module.length);
+const sizes = streams.map((stream) => stream.length);
+const bytes = Buffer.from(streams.flat());
+if (Buffer.compare(module, join(bytes, sizes)) !== 0) throw new Error(`${input}: an opcode is not known`);
 
 // Characters that need no escape in a string and none in a page's <script>.
 const alphabet = Array.from({ length: 95 }, (_, i) => String.fromCharCode(32 + i)).filter((c) => !"\"\\<'`".includes(c)).join("");
@@ -24,7 +39,9 @@ order.forEach((byte, i) => {
 const isSingle = Array.from({ length: 64 }, (_, i) =>
   [0, 1, 2, 3].reduce((digit, k) => digit + (order.indexOf(4 * i + k) < singles ? 1 << k : 0), 0).toString(16));
 
-writeFileSync(output, `const text = "${Array.from(bytes, (byte) => codes[byte]).join("")}";
+writeFileSync(output, `import { join } from "${moduleScript}";
+
+const text = "${Array.from(bytes, (byte) => codes[byte]).join("")}";
 
 // Made by embed.mjs, which says how.
 export function makeBytes() {
@@ -36,6 +53,6 @@ export function makeBytes() {
     const first = place(from);
     bytes[to++] = order[first < ${singles} ? first : ${singles} + (first - ${singles}) * ${alphabet.length} + place(++from)];
   }
-  return bytes;
+  return join(bytes, ${JSON.stringify(sizes)});
 }
 `);

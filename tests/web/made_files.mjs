@@ -1,4 +1,4 @@
-// A valid file with a long chunk that readers skip, behind its levels: a plane of any content would do as well.
+// Valid files that are made from others (spec/gim-format.md, chapter 3).
 import { crc16, crc32 } from "./checksums.mjs";
 
 function leb(number) {
@@ -16,6 +16,19 @@ function readLeb(bytes, at) {
   }
 }
 
+const bytesOf = (number) => [number & 255, (number >> 8) & 255, (number >> 16) & 255, number >>> 24];
+
+// Returns a file of one image, that has no cut and whose origin is of binary32, with its surface `scale` times as large.
+export function scaledFile(file, scale) {
+  const made = Uint8Array.from(file), index = readLeb(file, 8), view = new DataView(made.buffer);
+  for (let i = 0; i < 4; ++i) {
+    const at = index.at + 5 + 4 * i; // Kind, Bits, Level_Count, Image_Count and Side_Exponent come before Origin and Step
+    view.setFloat32(at, view.getFloat32(at, true) * scale, true);
+  }
+  made.set(bytesOf(crc32(made.subarray(0, index.value - 4))), index.value - 4);
+  return made;
+}
+
 // Returns {bytes} of the file with a chunk of `size` bytes of an unknown, optional type at its end.
 export function longFile(file, size) {
   const index = readLeb(file, 8);
@@ -26,7 +39,6 @@ export function longFile(file, size) {
   let length = index.value;
   while (8 + leb(length).length + body.length + 4 !== length) length = 8 + leb(length).length + body.length + 4;
   const head = [...file.subarray(0, 8), ...leb(length), ...body];
-  const check = crc32(head);
-  const tail = [check & 255, (check >> 8) & 255, (check >> 16) & 255, check >>> 24];
+  const tail = bytesOf(crc32(head));
   return { bytes: Uint8Array.from([...head, ...tail, ...file.subarray(index.value), ...payload]) };
 }
