@@ -108,8 +108,8 @@ MeshSurface read_surface_of(File& file, DracoMeshes& draco, const Json& mesh) {
         if (total > UINT32_MAX) throw Failure("it has more than 2^32 vertices");
         take(file.memory(), primitive.vertices(), 48, "its vertices");
         append(primitive, static_cast<uint8_t>(i), surface.mesh);
-        take(file.memory(), surface.mesh.triangles.size(), 25, "its triangles");
     }
+    take(file.memory(), surface.mesh.triangles.size(), 25, "its triangles");
     if (surface.mesh.triangles.empty()) throw Failure("it has no triangles");
     return surface;
 }

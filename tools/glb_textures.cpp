@@ -130,7 +130,7 @@ size_t TextureBaker::draw(const TextureSlot& slot, const Json& mesh, const MeshS
     }
     const AtlasSize size = atlas.size_for(pixels, [&](uint32_t primitive) { return readers[primitive] != nullptr; });
     const size_t channels = keeps_alpha(slot) ? 4 : 3, count = size_t{size.width} * size.height;
-    take(file_.memory(), count, 80, "the texels of its new textures");
+    take(file_.memory(), count, channels, "the texels of its new textures");
     std::vector<uint8_t> bytes(channels * count, 255);
     std::vector<bool> has_value(count, false);
     for (const MeshAtlas::Texel& texel : atlas.texels(size)) {

@@ -119,7 +119,8 @@ TEST(CutFile, TheBeginningOfAFileIsEnough) {
         }
         CutOptions options;
         options.level = last;
-        options.drop_normals = options.drop_colors = options.drop_displacements = options.drop_text = true;
+        options.drop_normals = options.drop_colors = options.drop_displacements = options.drop_labels = true;
+        options.drop_text = true;
         const Result<CutFile> whole = cut(file, options);
         ASSERT_TRUE(whole.ok());
         const auto end = file.begin() + static_cast<ptrdiff_t>(prefix);
@@ -137,7 +138,8 @@ TEST(CutFile, TheBeginningOfAFileIsEnough) {
 TEST(CutFile, PlanesAndTextAreLeftOutIfAsked) {
     for (const Bytes& file : valid_vectors()) {
         CutOptions options;
-        options.drop_normals = options.drop_colors = options.drop_displacements = options.drop_text = true;
+        options.drop_normals = options.drop_colors = options.drop_displacements = options.drop_labels = true;
+        options.drop_text = true;
         const Result<CutFile> made = cut(file, options);
         ASSERT_TRUE(made.ok()) << made.error().message;
         const Bytes& bytes = made.value().bytes;
@@ -145,6 +147,8 @@ TEST(CutFile, PlanesAndTextAreLeftOutIfAsked) {
         gim_plane_info plane;
         for (const uint32_t kind : {GIM_PLANE_NORMALS, GIM_PLANE_COLORS, GIM_PLANE_DISPLACEMENTS})
             EXPECT_EQ(gim_read_plane_info(&info, bytes.data(), bytes.size(), 0, kind, 0, &plane), GIM_NO_SUCH_PLANE);
+        gim_labels_info labels;
+        EXPECT_EQ(gim_read_labels_info(&info, bytes.data(), bytes.size(), 0, 0, &labels), GIM_NO_SUCH_PLANE);
         uint64_t text = 0;
         EXPECT_EQ(gim_read_text(&info, bytes.data(), bytes.size(), nullptr, 0, &text, nullptr, 0), GIM_OK);
         EXPECT_EQ(text, 0u);
