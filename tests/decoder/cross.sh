@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 readonly OUT=build/cross
-readonly CXX_FLAGS=(-std=c++20 -O1 -ffp-contract=off -fno-math-errno -Wall -Wextra -Werror -Wno-psabi -I. -Idecoder/include)
+readonly CXX_FLAGS=(-std=c++20 -O2 -ffp-contract=off -fno-math-errno -Wall -Wextra -Werror -Wno-psabi -I. -Idecoder/include)
 
 # All sources of format and decoder, but for compressed text: zstd is not there for other platforms.
 sources() {

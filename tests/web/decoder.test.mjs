@@ -34,6 +34,19 @@ test("vectors and damaged files decode as they do natively", async (t) => {
   assert.ok(checked > 10000);
 });
 
+test("an engine without SIMD is told apart", async () => {
+  assert.equal(GimDecoder.supported, true);
+  const { validate } = WebAssembly;
+  try {
+    WebAssembly.validate = () => false;
+    const old = await import(`${pathToFileURL(join(packageFolder, "decoder.mjs"))}?without-simd`);
+    assert.equal(old.GimDecoder.supported, false);
+    await assert.rejects(old.GimDecoder.ready, /SIMD/);
+  } finally {
+    WebAssembly.validate = validate;
+  }
+});
+
 test("errors have a class, a number and a name", () => {
   const file = vector("sphere-33-lossy.gim");
   throws(() => GimDecoder.info(file.subarray(0, 9)), "NEED_MORE_INPUT", /ends too early/);

@@ -223,7 +223,7 @@ export interface GimAsync {
 }
 
 export interface GimDecoderType {
-  /** Whether there is WebAssembly. */
+  /** Whether there is WebAssembly with SIMD. */
   readonly supported: boolean;
   /** Resolves when calls may be made. Rejects if a policy of the page forbids WebAssembly. */
   readonly ready: Promise<void>;
