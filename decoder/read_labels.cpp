@@ -5,20 +5,11 @@
 #include "decoder/pyramid/range_decoder.h"
 #include "decoder/with_image.h"
 #include "format/label_code.h"
+#include "format/stream_table.h"
 #include "gim/decoder.h"
 
 namespace gim {
 namespace {
-
-// The squares of cells that the labels of one image lie on, at the finest level before the file was cut.
-struct LabelSquares {
-    uint32_t count, side;
-};
-
-LabelSquares squares_of(const Header& header, uint32_t image) {
-    if (header.layout == FileLayout::kTiles) return {header.tiles.tiles, header.tiles.intervals(0)};
-    return {1, header.side(image) - 1};
-}
 
 // Reads the chunk of labels, and the level that they are asked for.
 struct OpenLabels {
@@ -32,11 +23,9 @@ struct OpenLabels {
         gim_level_info level;
         if (Status s = reader.level_info(request, &level); s != Status::kOk) return s;
         cells = level.triangle_count / 2;
-        squares = squares_of(request.header, request.image);
+        squares = label_squares(request.header, request.image);
         // A file that was cut may be small while its labels are many.
-        if (uint64_t{squares.count} * squares.side * squares.side > request.limits.max_samples)
-            return Status::kLimitExceeded;
-        return Status::kOk;
+        return squares.cells() > request.limits.max_samples ? Status::kLimitExceeded : Status::kOk;
     }
 };
 
@@ -46,7 +35,7 @@ void decode(std::span<const uint8_t> stream, const LabelSquares& squares, uint32
     RangeDecoder decoder(stream);
     const uint32_t step = 1u << level, middle = step / 2;
     const auto nothing = [](uint32_t, uint32_t) -> const uint8_t* { return nullptr; };
-    code_labels(decoder, squares.count, squares.side, row, nothing, [&](uint32_t, uint32_t r) {
+    code_labels(decoder, squares, row, nothing, [&](uint32_t, uint32_t r) {
         if (r % step != middle) return;
         for (uint32_t c = middle; c < squares.side; c += step) *labels++ = row[c];
     });
@@ -78,8 +67,7 @@ gim_status gim_decode_labels(const gim_info* info, const void* bytes, size_t siz
         if (!scratch) return Status::kBadArgument;
         if (scratch_size < labels.squares.side) return Status::kScratchTooSmall;
         if (Status s = read_payload(request.file, labels.chunk, labels.offset, &payload); s != Status::kOk) return s;
-        if (Status s = find_label_stream(payload, request.header.image_count(), request.image, &stream);
-            s != Status::kOk)
+        if (Status s = find_stream(payload, request.header.image_count(), request.image, &stream); s != Status::kOk)
             return s;
         decode(stream, labels.squares, request.level, static_cast<uint8_t*>(scratch), values);
         return Status::kOk;

@@ -12,9 +12,7 @@ constexpr gim_box kEndless = {{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX,
 
 bool read_told_box(const Header& header, uint32_t image, gim_box* box) {
     BoxNumbers numbers;
-    if (header.boxes.empty() || !read_box(header.boxes.subspan(image * kBoxSize, kBoxSize), &numbers) ||
-        !numbers.is_told())
-        return false;
+    if (header.boxes.empty() || !read_box(header.box_bytes(image), &numbers) || !numbers.is_told()) return false;
     const Box told = numbers.box(header);
     std::copy(told.low.begin(), told.low.end(), box->low);
     std::copy(told.high.begin(), told.high.end(), box->high);

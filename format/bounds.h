@@ -49,12 +49,7 @@ inline float box_coordinate(uint32_t number, size_t axis, const Units& units) {
 struct BoxNumbers {
     std::array<uint32_t, 6> of{};
 
-    bool is_told() const {
-        for (const uint32_t number : of) {
-            if (number != 0) return true;
-        }
-        return false;
-    }
+    bool is_told() const { return of != std::array<uint32_t, 6>{}; }
     Box box(const Units& units) const {
         Box b;
         for (size_t k = 0; k < 3; ++k) {
@@ -65,16 +60,18 @@ struct BoxNumbers {
     }
 };
 
-// Returns false if the bytes (kBoxSize of them) are malformed.
-inline bool read_box(std::span<const uint8_t> bytes, BoxNumbers* numbers) {
-    BitReader bits(bytes);
-    for (uint32_t& number : numbers->of) {
-        if (!bits.read(kBoxNumberBits, &number)) return false;
+// Returns false if they are malformed. Every call of the decoder checks the boxes of all images, so this takes them as
+// one number.
+inline bool read_box(std::span<const uint8_t, kBoxSize> bytes, BoxNumbers* numbers) {
+    constexpr int kPadding = 8 * kBoxSize - 6 * kBoxNumberBits;
+    uint64_t all = 0;
+    for (const uint8_t byte : bytes) all = all << 8 | byte;
+    for (size_t k = 0; k < 6; ++k) {
+        const int below = kPadding + kBoxNumberBits * static_cast<int>(5 - k);
+        numbers->of[k] = static_cast<uint32_t>(all >> below) & kMaxBoxNumber;
     }
-    for (size_t k = 0; k < 3; ++k) {
-        if (numbers->of[k] > numbers->of[k + 3]) return false;
-    }
-    return bits.rest_is_zero() && bits.at_end();
+    const auto& of = numbers->of;
+    return (all & ((1u << kPadding) - 1)) == 0 && of[0] <= of[3] && of[1] <= of[4] && of[2] <= of[5];
 }
 
 inline void append_box(const BoxNumbers& numbers, std::vector<uint8_t>* bytes) {

@@ -34,8 +34,8 @@ bool in_range(Real value, Real low, Real high) {
     return value >= low && value <= high;
 }  // false for a NaN
 
-// Checks the chunks: SEAM once, then kept_levels() times LEVL, then each kind of plane, and labels, at most once. META may stand anywhere,
-// but once; unknown optional chunks may stand anywhere.
+// Checks the chunks: SEAM once, then kept_levels() times LEVL, then each kind of plane, and labels, at most once. META may
+// stand anywhere, but once; unknown optional chunks may stand anywhere.
 Status check_index(Header* header) {
     ByteReader reader(header->index);
     uint32_t seams = 0, levels = 0, texts = 0, planes_seen = 0;
@@ -157,8 +157,8 @@ bool parse_bounds(ByteReader* reader, std::span<const uint8_t> file, Header* hea
     header->level_errors = file.subspan(at, errors);
     header->boxes = file.subspan(at + errors, boxes);
     BoxNumbers numbers;
-    for (size_t image = 0; image < header->image_count(); ++image) {
-        if (!read_box(header->boxes.subspan(image * kBoxSize, kBoxSize), &numbers)) return false;
+    for (uint32_t image = 0; image < header->image_count(); ++image) {
+        if (!read_box(header->box_bytes(image), &numbers)) return false;
     }
     return true;
 }

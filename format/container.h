@@ -120,6 +120,10 @@ struct Header : Units {
     uint32_t image_count() const {
         return layout == FileLayout::kSquares ? static_cast<uint32_t>(side_exponents.size()) : 1;
     }
+    // Only if there are boxes.
+    std::span<const uint8_t, kBoxSize> box_bytes(uint32_t image) const {
+        return boxes.subspan(image * kBoxSize).first<kBoxSize>();
+    }
     uint32_t kept_levels() const { return level_count - cut_levels; }
     uint32_t side(uint32_t image) const { return (1u << side_exponents[image]) + 1; }
     // Levels 0 .. level_count_of(image)-1 are stored; the coarsest of them has at least 3 samples a side.

@@ -3,11 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "format/bit_model.h"
-#include "format/status.h"
+#include "format/container.h"
 
 namespace gim {
 
@@ -46,27 +44,33 @@ void code_label_row(Coder& coder, LabelModels& models, uint32_t count, const uin
     }
 }
 
-// Codes the labels of `squares` squares of side x side cells, one after the other. row: `side` bytes of work space.
-// values(square, r): the row of labels that an encoder codes, nullptr for a decoder. take(square, r): row is complete.
+// The squares of cells that the labels of one image lie on, at the finest level before the file was cut.
+struct LabelSquares {
+    uint32_t count, side;
+
+    uint64_t cells() const { return uint64_t{count} * side * side; }
+};
+
+// Not of kCharts.
+inline LabelSquares label_squares(const Header& header, uint32_t image) {
+    if (header.layout == FileLayout::kTiles) return {header.tiles.tiles, header.tiles.intervals(0)};
+    return {1, header.side(image) - 1};
+}
+
+// Codes the labels of squares, one after the other. row: `side` bytes of work space. values(square, r): the row of labels
+// that an encoder codes, nullptr for a decoder. take(square, r): row is complete.
 template <class Coder, class Values, class Take>
-void code_labels(Coder& coder, uint32_t squares, uint32_t side, uint8_t* row, const Values& values, const Take& take) {
+void code_labels(Coder& coder, const LabelSquares& squares, uint8_t* row, const Values& values, const Take& take) {
     LabelModels models;
     uint8_t first = 0;
-    for (uint32_t square = 0; square < squares; ++square) {
-        for (uint32_t c = 0; c < side; ++c) row[c] = first;
-        for (uint32_t r = 0; r < side; ++r) {
-            code_label_row(coder, models, side, values(square, r), row);
+    for (uint32_t square = 0; square < squares.count; ++square) {
+        for (uint32_t c = 0; c < squares.side; ++c) row[c] = first;
+        for (uint32_t r = 0; r < squares.side; ++r) {
+            code_label_row(coder, models, squares.side, values(square, r), row);
             if (r == 0) first = row[0];
             take(square, r);
         }
     }
 }
-
-// Finds the stream of an image in the payload of a LABL chunk.
-Status find_label_stream(std::span<const uint8_t> payload, uint32_t image_count, uint32_t image,
-                         std::span<const uint8_t>* stream);
-
-// One stream per image.
-std::vector<uint8_t> serialize_labels(std::span<const std::vector<uint8_t>> streams);
 
 }  // namespace gim

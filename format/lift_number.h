@@ -2,9 +2,18 @@
 // bits of Wavelet::lift (format/lifting.h, format/tile_lifting.h).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gim {
+
+// A number of an image whose kind is known at run time only: the bits of an int32_t or of a float. It may stand for memory
+// that elsewhere is named by its kind.
+#if defined(__GNUC__)
+typedef uint32_t __attribute__((may_alias)) Number;
+#else
+typedef uint32_t Number;
+#endif
 
 // Which step of a wavelet, and whether it is done or undone.
 struct LiftStep {
@@ -61,5 +70,11 @@ class LiftFloat {
   private:
     float factor_, sign_;
 };
+
+// to[i] from a[i] and b[i]. `to` overlaps neither a nor b.
+template <class Lift, class Sample>
+void lift_numbers(const Lift& lift, Sample* __restrict to, const Sample* a, const Sample* b, size_t count) {
+    for (size_t i = 0; i < count; ++i) to[i] = lift(to[i], a[i], b[i]);
+}
 
 }  // namespace gim

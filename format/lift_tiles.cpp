@@ -1,14 +1,6 @@
 #include "format/lift_tiles.h"
 
 namespace gim {
-namespace {
-
-template <class Lift, class Sample>
-void lift_row(const Lift& lift, Sample* __restrict to, const Sample* a, const Sample* b, size_t count) {
-    for (size_t i = 0; i < count; ++i) to[i] = lift(to[i], a[i], b[i]);
-}
-
-}  // namespace
 
 template <class Lift>
 void lift_tile_rows(const LiftStep& step, void* samples, const RowBlock& block) {
@@ -17,7 +9,7 @@ void lift_tile_rows(const LiftStep& step, void* samples, const RowBlock& block) 
     auto* s = static_cast<Sample*>(samples);
     for (uint32_t row = 0; row < block.rows; ++row) {
         const Sample *a = s + block.a.at(row), *b = s + block.b.at(row);
-        lift_row(lift, s + block.target.at(row), a, b, block.count);
+        lift_numbers(lift, s + block.target.at(row), a, b, block.count);
     }
 }
 

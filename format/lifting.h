@@ -68,24 +68,6 @@ inline void lift_row(int step, typename Wavelet::Sample* __restrict target, cons
     }
 }
 
-// An odd step and the even one after it: low[i] = lift(step, low[i], high[i], next_high[i]), then
-// high[i] = lift(step - 1, high[i], previous_low[i], low[i]). The four arrays do not overlap.
-template <class Wavelet, Direction D>
-inline void lift_row_pair(int step, typename Wavelet::Sample* __restrict low, typename Wavelet::Sample* __restrict high,
-                          const typename Wavelet::Sample* __restrict next_high,
-                          const typename Wavelet::Sample* __restrict previous_low, size_t count) {
-    const auto lift = [&]<int kStep>(std::integral_constant<int, kStep>) {
-        for (size_t i = 0; i < count; ++i) {
-            low[i] = Wavelet::template lift<D>(kStep, low[i], high[i], next_high[i]);
-            high[i] = Wavelet::template lift<D>(kStep - 1, high[i], previous_low[i], low[i]);
-        }
-    };
-    if constexpr (Wavelet::kSteps > 2) {
-        if (step == 3) return lift(std::integral_constant<int, 3>{});
-    }
-    lift(std::integral_constant<int, 1>{});
-}
-
 // The low samples that are lifted: all, unless a square shares its rim (format/rim.h). Then the 9/7 only scales those
 // at the ends of a run: linear runs have no details up to their ends, and the rim is transformed by itself.
 struct LiftedRange {
@@ -105,16 +87,8 @@ inline void lift_end(int step, typename Wavelet::Sample* low, size_t width) {
     }
 }
 
-// Which low samples of a run are kept: none, those at its ends, or inner ones, too.
-struct KeepsNone {
-    static constexpr bool kInner = false;
-    bool ends() const { return false; }
-};
-struct KeepsEnds : KeepsNone {
-    bool ends() const { return true; }
-};
-
-// An odd step on a run of triples. `high` has room for a triple before and after.
+// An odd step on a run of triples. `high` has room for a triple before and after. keeps: which low samples are kept;
+// keeps.ends(), those at the ends; keeps(i), inner ones.
 template <class Wavelet, Direction D, class Keeps>
 inline void lift_lows(int step, size_t lows, size_t highs, typename Wavelet::Sample* low,
                       typename Wavelet::Sample* high, const Keeps& keeps) {
@@ -129,13 +103,11 @@ inline void lift_lows(int step, size_t lows, size_t highs, typename Wavelet::Sam
     const auto [begin, end] = lifted_lows(lows, keeps.ends());
     if (begin > 0) lift_end<Wavelet, D>(step, low, 3);
     size_t from = begin;
-    if constexpr (Keeps::kInner) {
-        for (size_t i = begin; i < end; ++i) {
-            if (!keeps(i)) continue;
-            lift(from, i);
-            lift_end<Wavelet, D>(step, low + 3 * i, 3);
-            from = i + 1;
-        }
+    for (size_t i = begin; i < end; ++i) {
+        if (!keeps(i)) continue;
+        lift(from, i);
+        lift_end<Wavelet, D>(step, low + 3 * i, 3);
+        from = i + 1;
     }
     lift(from, end);
     if (end < lows) lift_end<Wavelet, D>(step, low + 3 * end, 3);

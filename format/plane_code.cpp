@@ -4,6 +4,7 @@
 
 #include "format/bytes.h"
 #include "format/seam.h"
+#include "format/stream_table.h"
 #include "format/tile_atlas.h"
 
 namespace gim {
@@ -53,23 +54,7 @@ Status parse_plane(std::span<const uint8_t> payload, const Header& header, uint3
     }
     if (largest > limits.max_side || samples > limits.max_samples) return Status::kLimitExceeded;
 
-    // Sizes of the streams. A single image has the rest of the payload.
-    uint64_t offset = 0, size = reader.left(), total = size;
-    if (image_count > 1) {
-        total = 0;
-        for (uint32_t i = 0; i < image_count; ++i) {
-            uint64_t one = 0;
-            if (!reader.read_leb128(&one)) return Status::kMalformed;
-            if (i == image) {
-                offset = total;
-                size = one;
-            }
-            total += one;  // at most 2^16 * 2^42
-        }
-    }
-    if (total != reader.left()) return Status::kMalformed;
-    plane->stream = payload.subspan(reader.position() + static_cast<size_t>(offset), static_cast<size_t>(size));
-    return Status::kOk;
+    return find_stream(payload.subspan(reader.position()), image_count, image, &plane->stream);
 }
 
 std::vector<uint8_t> serialize_plane(float quantizer, std::span<const uint8_t> side_exponents,
@@ -77,10 +62,7 @@ std::vector<uint8_t> serialize_plane(float quantizer, std::span<const uint8_t> s
     std::vector<uint8_t> payload = {kLossyWavelet};
     append_f32(quantizer, &payload);
     payload.insert(payload.end(), side_exponents.begin(), side_exponents.end());
-    if (streams.size() > 1) {
-        for (const auto& stream : streams) append_leb128(stream.size(), &payload);
-    }
-    for (const auto& stream : streams) payload.insert(payload.end(), stream.begin(), stream.end());
+    append_streams(streams, &payload);
     return payload;
 }
 

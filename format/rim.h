@@ -80,7 +80,6 @@ class SharedRim {
 
 // What lifting keeps of an image row. On the rim, cut-nodes end runs of their own. Inner rows keep only their ends.
 struct KeepsOfRow {
-    static constexpr bool kInner = true;
     const SharedRim& rim;
     uint32_t row, rows;
 

@@ -71,7 +71,6 @@ class TileSteps {
     void for_each_edge(const F& f);
     void share_details();
     void predict(const LiftStep& step);
-    void predict_faces(const LiftStep& step, ptrdiff_t tile, bool from_horizontal);
     void update(const LiftStep& step);
     void update_inside(const LiftStep& step, ptrdiff_t tile);
     void update_edge(const LiftStep& step, const Edge& edge);

@@ -5,21 +5,10 @@
 
 #include "tools/glb_file.h"
 #include "tools/gltf_uri.h"
+#include "tools/picture_kind.h"
 
 namespace gim::gltf {
 namespace {
-
-// Tells the kind of a picture by its first bytes. Empty if it is unknown.
-std::string picture_type(std::span<const uint8_t> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.starts_with("\x89PNG")) return "image/png";
-    if (text.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
-    if (text.starts_with("RIFF") && text.substr(0, 12).ends_with("WEBP")) return "image/webp";
-    if (text.starts_with("\xABKTX 20")) return "image/ktx2";
-    if (text.starts_with("DDS ")) return "image/vnd-ms.dds";
-    if (text.size() > 12 && text.substr(4, 8) == "ftypavif") return "image/avif";
-    return "";
-}
 
 const char* const kMeshopt[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
@@ -79,7 +68,7 @@ void GlbDocument::embed_pictures() {
         try {
             Bytes bytes = read_uri(uri, file_.context().folder, file_.memory().left());
             take(file_.memory(), bytes.size(), 1, "the bytes of its pictures");
-            const std::string type = picture_type(bytes);
+            const std::string_view type = picture_kind(bytes).media_type;
             if (type.empty()) throw Failure("it is no picture that gim knows");
             const size_t view = add_view(std::move(bytes), Place::kPicture);
             Json& image = root["images"][i];

@@ -38,4 +38,10 @@ Result<Bytes> glb_bytes(const std::string& json, Bytes binary) {
     return out;
 }
 
+void replace_zero_normals(std::vector<float>& normals) {
+    for (size_t i = 0; i + 2 < normals.size(); i += 3) {
+        if (normals[i] == 0 && normals[i + 1] == 0 && normals[i + 2] == 0) normals[i + 2] = 1;
+    }
+}
+
 }  // namespace gim

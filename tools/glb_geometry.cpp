@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gim/decoder.hpp"
+#include "tools/glb_file.h"
 
 namespace gim {
 namespace {
@@ -28,13 +29,6 @@ struct ImageMesh {
         return {double{p[0]}, double{p[1]}, double{p[2]}};
     }
 };
-
-// glTF asks for unit normals. Where the surface has none, any direction will do.
-void replace_zeros(std::vector<float>& normals) {
-    for (size_t i = 0; i + 2 < normals.size(); i += 3) {
-        if (normals[i] == 0 && normals[i + 1] == 0 && normals[i + 2] == 0) normals[i + 2] = 1;
-    }
-}
 
 void place_in_space(const std::array<double, 3>& origin, std::vector<float>& positions) {
     for (size_t i = 0; i < positions.size(); ++i)
@@ -87,7 +81,7 @@ ImageMesh mesh_of(const DecodedImage& image, const AtlasPlace& place, const Want
         mesh.triangles = hard ? &image.hard.triangles : &image.triangles;
     }
     place_in_space(image.origin, mesh.positions);
-    replace_zeros(mesh.normals);
+    replace_zero_normals(mesh.normals);
     if (wanted.texcoords && wanted.tangents) add_tangents(mesh);
     return mesh;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/gltf_uri.h"
+#include "tools/picture_kind.h"
 
 namespace gim::gltf {
 namespace {
@@ -11,16 +12,6 @@ namespace {
 // Extensions that give a texture another image than its `source`.
 constexpr std::array<const char*, 4> kImageExtensions = {"EXT_texture_webp", "KHR_texture_basisu", "EXT_texture_avif",
                                                          "MSFT_texture_dds"};
-
-// Names image files that gim cannot read. Empty if the bytes are none of them.
-std::string unread_kind(std::span<const uint8_t> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.starts_with("RIFF") && text.substr(0, 12).ends_with("WEBP")) return "WebP";
-    if (text.starts_with("\xABKTX")) return "KTX";
-    if (text.starts_with("DDS ")) return "DDS";
-    if (text.size() > 12 && text.substr(4, 8) == "ftypavif") return "AVIF";
-    return "";
-}
 
 // Rotates as the reference viewers do: counter-clockwise as an image is seen, whose v points down.
 void apply_transform(const Json& transform, BaseColor& color) {
@@ -87,8 +78,9 @@ uint32_t Pictures::load_image(uint64_t image) {
         }
         bytes = read;
     }
-    const std::string kind = unread_kind(bytes);
-    if (!kind.empty()) throw Failure("image " + std::to_string(image) + " is " + kind + ", which gim does not read");
+    const PictureKind kind = picture_kind(bytes);
+    if (!kind.name.empty() && !kind.is_read)
+        throw Failure("image " + std::to_string(image) + " is " + std::string(kind.name) + ", which gim does not read");
     index = file_.context().textures->add(bytes, std::to_string(image) + " of the glTF file");
     return index;
 }

@@ -20,6 +20,7 @@ add_library(gim_readers STATIC
     ${folder}/gltf_scene.cpp
     ${folder}/gltf_skin.cpp
     ${folder}/gltf_uri.cpp
+    ${folder}/picture_kind.cpp
     ${folder}/memory_budget.cpp
     ${folder}/mesh_read.cpp
     ${folder}/named_file.cpp

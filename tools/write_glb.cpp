@@ -68,14 +68,6 @@ void add_bounds(json& accessor, const std::vector<float>& positions) {
     accessor["max"] = high;
 }
 
-// Normals must have length 1. If the surface has none, any direction will do.
-std::vector<float> without_zeros(std::vector<float> normals) {
-    for (size_t i = 0; i + 2 < normals.size(); i += 3) {
-        if (normals[i] == 0 && normals[i + 1] == 0 && normals[i + 2] == 0) normals[i + 2] = 1;
-    }
-    return normals;
-}
-
 // Returns the texture coordinates for a texture of the plane's size. Without a plane they stay unchanged.
 std::vector<float> texcoords_for(const DecodedImage& image, const GridMesh& grid, const ImagePlane& plane) {
     std::vector<float> uv = at_samples(grid, image.grid_texcoords, 2);
@@ -127,9 +119,9 @@ Result<Bytes> write_glb(std::span<const DecodedImage> images, bool fused) {
         json material = plain_material();
         attributes["POSITION"] = buffer.add(positions, 3, "VEC3", kFloat, kArrayBuffer);
         add_bounds(buffer.accessors.back(), positions);
-        attributes["NORMAL"] =
-            buffer.add(without_zeros(fused ? image.normals : at_samples(grid, image.shading_normals(), 3)), 3, "VEC3",
-                       kFloat, kArrayBuffer);
+        std::vector<float> normals = fused ? image.normals : at_samples(grid, image.shading_normals(), 3);
+        replace_zero_normals(normals);
+        attributes["NORMAL"] = buffer.add(normals, 3, "VEC3", kFloat, kArrayBuffer);
         if (!fused) add_planes(image, grid, buffer, attributes, material);
         // Images without textures share one material.
         auto same = std::find(materials.begin(), materials.end(), material);

@@ -92,7 +92,7 @@ class PyramidDecoder {
     // A number of the base image.
     Number base_number(int32_t value, float step) const {
         if (lifting_.integers()) return static_cast<uint32_t>(value) + static_cast<uint32_t>(shape_.middle);
-        return std::bit_cast<Number>(static_cast<float>(value) * step + static_cast<float>(shape_.middle));
+        return std::bit_cast<uint32_t>(static_cast<float>(value) * step + static_cast<float>(shape_.middle));
     }
 
     bool decode_step(BandDecoder& coder, uint32_t step) {

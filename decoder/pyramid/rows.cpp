@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "format/lift_number.h"
 #include "format/lifting.h"
 
 namespace gim {
@@ -22,11 +21,6 @@ const Sample* as(const Number* numbers) {
 LiftInteger integer_step(int number) { return LiftInteger({number, 0, true}); }
 LiftFloat float_step(int number) {
     return LiftFloat({number, Irreversible97::kFactor[static_cast<size_t>(number)], true});
-}
-
-template <class Lift, class Sample>
-void lift_row(const Lift& lift, Sample* __restrict target, const Sample* a, const Sample* b, size_t count) {
-    for (size_t i = 0; i < count; ++i) target[i] = lift(target[i], a[i], b[i]);
 }
 
 template <class Lift, class Sample>
@@ -54,9 +48,9 @@ void bound_units(float* values, size_t count) {
 
 void RowLifting::undo(int step, Number* target, const Number* a, const Number* b, size_t count) const {
     if (integers_)
-        lift_row(integer_step(step), as<int32_t>(target), as<int32_t>(a), as<int32_t>(b), count);
+        lift_numbers(integer_step(step), as<int32_t>(target), as<int32_t>(a), as<int32_t>(b), count);
     else
-        lift_row(float_step(step), as<float>(target), as<float>(a), as<float>(b), count);
+        lift_numbers(float_step(step), as<float>(target), as<float>(a), as<float>(b), count);
 }
 
 void RowLifting::undo_pair(int step, Number* low, Number* high, const Number* next_high, const Number* previous_low,

@@ -7,11 +7,9 @@
 #include <cstdint>
 
 #include "format/inline.h"
+#include "format/lift_number.h"
 
 namespace gim {
-
-// A number of an image: the bits of an int32_t or of a float. One image has one kind.
-using Number = uint32_t;
 
 // The inverse of a wavelet's lifting steps. The last step changed the low samples.
 class RowLifting {

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "format/sideband_code.h"
+#include "format/stream_table.h"
 
 namespace gim {
 namespace {
@@ -11,25 +12,8 @@ namespace {
 // Finds the part of a level chunk that belongs to one image.
 Status image_stream(const Header& header, std::span<const uint8_t> payload, uint32_t image, uint32_t level,
                     std::span<const uint8_t>* stream) {
-    if (header.image_count() == 1) {
-        *stream = payload;
-        return Status::kOk;
-    }
-    ByteReader reader(payload);
-    uint64_t offset = 0, size = 0, total = 0;
-    for (uint32_t i = 0; i < header.image_count(); ++i) {
-        if (level >= header.level_count_of(i)) continue;
-        uint64_t one = 0;
-        if (!reader.read_leb128(&one)) return Status::kMalformed;
-        if (i == image) {
-            offset = total;
-            size = one;
-        }
-        total += one;
-    }
-    if (total != reader.left()) return Status::kMalformed;
-    *stream = payload.subspan(reader.position() + static_cast<size_t>(offset), static_cast<size_t>(size));
-    return Status::kOk;
+    const auto has_level = [&](uint32_t i) { return level < header.level_count_of(i); };
+    return find_stream(payload, header.image_count(), image, has_level, stream);
 }
 
 Status decode_pyramid(const Header& header, std::span<const uint8_t> file, uint32_t image, uint32_t level,

@@ -31,8 +31,8 @@ void scale(float* values, size_t count, float factor) {
     for (size_t i = 0; i < count; ++i) values[i] = values[i] * factor;
 }
 
-// Decodes from the base up to the level asked for, stream by stream. Samples are numbers of four bytes: integers if the
-// arithmetic is, else floats.
+// Decodes from the base up to the level asked for, stream by stream. Samples are integers if the arithmetic is, else
+// floats.
 class TileDecoder {
   public:
     TileDecoder(const TileCoding& coding, uint32_t level, TileWorkspace& ws)
@@ -58,7 +58,7 @@ class TileDecoder {
   private:
     // Those of the level asked for are in slot 0.
     uint32_t slot(uint32_t step) const { return (steps_ - level_ - step) & 1; }
-    uint32_t* samples(uint32_t step) const { return static_cast<uint32_t*>(ws_.samples[slot(step)]); }
+    Number* samples(uint32_t step) const { return static_cast<Number*>(ws_.samples[slot(step)]); }
     static size_t samples_after(uint32_t step) { return TilePlanes(1u << step).size(); }
 
     bool decode_base(RangeDecoder& coder) {
@@ -104,7 +104,7 @@ class TileDecoder {
     }
 
     // A number of the base as a sample, as its bits.
-    uint32_t number_of(int32_t value, float step) const {
+    Number number_of(int32_t value, float step) const {
         if (arithmetic_.is_integer()) return static_cast<uint32_t>(value) + static_cast<uint32_t>(middle_);
         return std::bit_cast<uint32_t>(static_cast<float>(value) * step + static_cast<float>(middle_));
     }

@@ -8,6 +8,7 @@
 #include "encoder/planes/input_triangles.h"
 #include "encoder/surface/closest_point.h"
 #include "format/label_code.h"
+#include "format/stream_table.h"
 
 namespace gim {
 namespace {
@@ -24,11 +25,12 @@ std::vector<Vec3> cell_middles(const Mesh& surface) {
 }
 
 // Codes the labels of one image.
-std::vector<uint8_t> code_image(std::span<const uint8_t> labels, uint32_t squares, uint32_t side) {
+std::vector<uint8_t> code_image(std::span<const uint8_t> labels, const LabelSquares& squares) {
     RangeEncoder encoder;
+    const size_t side = squares.side;
     std::vector<uint8_t> row(side);
-    const auto values = [&](uint32_t square, uint32_t r) { return labels.data() + (size_t{square} * side + r) * side; };
-    code_labels(encoder, squares, side, row.data(), values, [](uint32_t, uint32_t) {});
+    const auto values = [&](uint32_t square, uint32_t r) { return labels.data() + (square * side + r) * side; };
+    code_labels(encoder, squares, row.data(), values, [](uint32_t, uint32_t) {});
     return encoder.finish();
 }
 
@@ -60,19 +62,17 @@ Result<std::vector<uint8_t>> cell_labels(std::span<const uint8_t> file, const Tr
 Result<std::vector<uint8_t>> with_labels(std::span<const uint8_t> file, std::span<const uint8_t> labels) {
     Header header;
     if (parse_header(file, kNoLimits, &header) != Status::kOk) return decoding_error(Stage::kCode, GIM_MALFORMED);
+    if (header.layout == FileLayout::kCharts) return Error{Stage::kCode, "labels do not fit the image"};
     std::vector<std::vector<uint8_t>> streams;
     size_t at = 0;
     for (uint32_t image = 0; image < header.image_count(); ++image) {
-        const bool is_tiles = header.layout == FileLayout::kTiles;
-        const uint32_t squares = is_tiles ? header.tiles.tiles : 1;
-        const uint32_t side = is_tiles ? header.tiles.intervals(0) : header.side(image) - 1;
-        const size_t cells = size_t{squares} * side * side;
-        if (header.layout == FileLayout::kCharts || cells > labels.size() - at)
-            return Error{Stage::kCode, "labels do not fit the image"};
-        streams.push_back(code_image(labels.subspan(at, cells), squares, side));
-        at += cells;
+        const LabelSquares squares = label_squares(header, image);
+        if (squares.cells() > labels.size() - at) return Error{Stage::kCode, "labels do not fit the image"};
+        streams.push_back(code_image(labels.subspan(at, squares.cells()), squares));
+        at += squares.cells();
     }
-    const CodedPlane chunk = {ChunkType::kLabels, serialize_labels(streams)};
+    CodedPlane chunk = {ChunkType::kLabels, {}};
+    append_streams(streams, &chunk.payload);
     return replace_planes(file, {&chunk, 1});
 }
 

@@ -7,18 +7,14 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/decoder/vectors.h"
+#include "tests/decoder/vector_file.h"
 
 namespace gim {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-Bytes vector_file(const std::string& name) {
-    const Bytes bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
-    EXPECT_FALSE(bytes.empty()) << name;
-    return bytes;
-}
+using test::vector_file;
 
 template <class T>
 void append(const std::vector<T>& values, std::vector<T>* all) {

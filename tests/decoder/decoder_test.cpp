@@ -6,16 +6,12 @@
 #include <map>
 
 #include "format/ring.h"
-#include "tests/decoder/vectors.h"
+#include "tests/decoder/vector_file.h"
 
 namespace gim {
 namespace {
 
-std::vector<uint8_t> vector_file(const std::string& name) {
-    const auto bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
-    EXPECT_FALSE(bytes.empty()) << name;
-    return bytes;
-}
+using test::vector_file;
 
 struct Opened {
     std::vector<uint8_t> bytes;

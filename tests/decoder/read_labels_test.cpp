@@ -3,18 +3,14 @@
 #include <string>
 
 #include "gim/decoder.hpp"
-#include "tests/decoder/vectors.h"
+#include "tests/decoder/vector_file.h"
 
 namespace gim {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-Bytes vector_file(const std::string& name) {
-    Bytes bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
-    EXPECT_FALSE(bytes.empty()) << name;
-    return bytes;
-}
+using test::vector_file;
 
 Bytes labels_of(const Bytes& file, uint32_t image, uint32_t level) {
     Decoder decoder;

@@ -11,18 +11,14 @@
 #include "format/plane_code.h"
 #include "format/ring.h"
 #include "gim/decoder.hpp"
-#include "tests/decoder/vectors.h"
+#include "tests/decoder/vector_file.h"
 
 namespace gim {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-Bytes vector_file(const std::string& name) {
-    Bytes bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
-    EXPECT_FALSE(bytes.empty()) << name;
-    return bytes;
-}
+using test::vector_file;
 
 // The file with another payload in one of its plane chunks and with correct checksums.
 Bytes with_plane(const Bytes& file, ChunkType type, const std::function<void(Bytes&)>& change) {

@@ -52,13 +52,15 @@ TEST(Bounds, BoxesAreNineBitsAFace) {
     append_box(numbers, &bytes);
     // 010000000 000000000 111111111 110000000 000000001 111111111 00
     EXPECT_EQ(bytes, (std::vector<uint8_t>{0x40, 0x00, 0x3F, 0xF8, 0x00, 0x0F, 0xFC}));
-    ASSERT_TRUE(read_box(bytes, &back));
+    ASSERT_EQ(bytes.size(), kBoxSize);
+    const std::span<const uint8_t, kBoxSize> stored(bytes);
+    ASSERT_TRUE(read_box(stored, &back));
     EXPECT_EQ(back.of, numbers.of);
     const Box box = back.box(units_of(12, 0.25f));  // 16 units a number
     EXPECT_EQ(box.low, (std::array<float, 3>{-10, -512, 1000 + 4 * 383}));
     EXPECT_EQ(box.high, (std::array<float, 3>{1014, -508, 1000 + 4 * 383}));
     bytes.back() |= 1;
-    EXPECT_FALSE(read_box(bytes, &back));
+    EXPECT_FALSE(read_box(stored, &back));
 }
 
 TEST(Bounds, ABoxAroundABoxIsTheLeast) {

@@ -78,16 +78,15 @@ typedef struct gim_box {
 /* Header and index of a file. It holds plain values and no pointer into the bytes. */
 typedef struct gim_info {
     uint32_t version;
-    uint32_t layout;      /* GIM_LAYOUT_... */
-    uint32_t coding;      /* GIM_CODING_... */
-    uint32_t bits;        /* quantizer: bits per coordinate of the bounding box, 8..20 */
-    uint32_t image_count; /* GIM_LAYOUT_GIM: any; else 1 */
-    uint32_t level_count; /* levels in the file; an image has levels 0 .. gim_level_info.coarsest_level */
-    uint32_t chunk_count; /* for gim_read_chunk */
-    uint64_t
-        sample_count; /* of all images at level 0, undefined ones included; GIM_LAYOUT_MCGIM: before the file was cut */
-    uint64_t file_size; /* of the whole file, as the index says */
-    double origin[3];   /* where coordinates of 0 units lie, in object units; of all images */
+    uint32_t layout;       /* GIM_LAYOUT_... */
+    uint32_t coding;       /* GIM_CODING_... */
+    uint32_t bits;         /* quantizer: bits per coordinate of the bounding box, 8..20 */
+    uint32_t image_count;  /* GIM_LAYOUT_GIM: any; else 1 */
+    uint32_t level_count;  /* levels in the file; an image has levels 0 .. gim_level_info.coarsest_level */
+    uint32_t chunk_count;  /* for gim_read_chunk */
+    uint64_t sample_count; /* of all images at level 0, undefined ones included. GIM_LAYOUT_MCGIM: as before a cut */
+    uint64_t file_size;    /* of the whole file, as the index says */
+    double origin[3];      /* where coordinates of 0 units lie, in object units; of all images */
     uint32_t
         is_relative;     /* 1: decoded positions are relative to origin, because floats could not hold their sum: add it
                               in doubles. 0: decoded positions contain it. Normals are the same either way */
@@ -169,8 +168,8 @@ GIM_API gim_status gim_decode_positions(const gim_info* info, const void* bytes,
  *            samples of their sides, then those of the tiles row by row
  * normals    vertex_count*3 floats of unit length; 0 0 0 where the surface has no normal
  * texcoords  vertex_count*2 floats: u = column / (width-1), v = row / (height-1) in the grid of level 0, at every
- *            level; if the file was cut, of the level 0 before that. A vertex on a seam has those of its first sample. GIM_LAYOUT_MCGIM: coarse levels may reach beyond
- *            0..1
+ *            level; if the file was cut, of the level 0 before that. A vertex on a seam has those of its first sample.
+ *            GIM_LAYOUT_MCGIM: coarse levels may reach beyond 0..1
  * triangles  triangle_count*3 indices, counter-clockwise seen from outside. Quads are split along the shorter diagonal,
  *            except where that would give the mesh an edge twice (spec, "Surface", "Charts", "Tiles") */
 GIM_API gim_status gim_decode_mesh(const gim_info* info, const void* bytes, size_t size, uint32_t image, uint32_t level,

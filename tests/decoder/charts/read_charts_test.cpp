@@ -10,7 +10,7 @@
 #include "format/checksum.h"
 #include "format/container.h"
 #include "gim/decoder.hpp"
-#include "tests/decoder/vectors.h"
+#include "tests/decoder/vector_file.h"
 #include "tests/format/raw_chart_table.h"
 
 namespace gim {
@@ -18,11 +18,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-Bytes vector_file(const std::string& name) {
-    Bytes bytes = test::read_bytes(std::string(GIM_SOURCE_DIR) + "/spec/vectors/valid/" + name + ".gim");
-    EXPECT_FALSE(bytes.empty()) << name;
-    return bytes;
-}
+using test::vector_file;
 
 // Every vector of charts.
 std::vector<std::string> chart_vectors() {
