@@ -1,6 +1,7 @@
 #include "decoder/layouts.h"
 
 #include "decoder/charts/read_charts.h"
+#include "decoder/raster/read_raster.h"
 #include "decoder/squares/read_squares.h"
 #include "decoder/tiles/read_tiles.h"
 
@@ -15,9 +16,11 @@ constexpr LevelReader kReaders[] = {
      chart_plane_scratch_size, decode_chart_plane},
     {tile_level_info, decode_tile_mesh, decode_tile_grid, read_tile_seams, open_tile_plane, tile_plane_scratch_size,
      decode_tile_plane},
+    {raster_level_info, decode_raster_mesh, decode_raster_grid, read_raster_seams, open_raster_plane,
+     raster_plane_scratch_size, decode_raster_plane},
 };
 static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1 &&
-              static_cast<size_t>(FileLayout::kTiles) == 2);
+              static_cast<size_t>(FileLayout::kTiles) == 2 && static_cast<size_t>(FileLayout::kRaster) == 3);
 
 }  // namespace
 

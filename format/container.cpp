@@ -64,7 +64,8 @@ Status check_index(Header* header) {
                 const uint32_t kind = 1u << static_cast<uint32_t>(chunk.type);
                 if (!chunk.optional || chunk.zstd || (planes_seen & kind) != 0 || levels != header->kept_levels())
                     return Status::kMalformed;
-                if (chunk.type == ChunkType::kLabels && header->layout == FileLayout::kCharts)
+                if (header->layout == FileLayout::kRaster ||
+                    (chunk.type == ChunkType::kLabels && header->layout == FileLayout::kCharts))
                     return Status::kMalformed;
                 planes_seen |= kind;
                 break;
@@ -105,6 +106,8 @@ Status parse_rectangle(ByteReader* reader, const ContainerLimits& limits, Header
     header->width = static_cast<uint32_t>(width);
     header->height = static_cast<uint32_t>(height);
     header->sample_count = width * height;
+    if (header->layout == FileLayout::kRaster && (header->level_count != 1 || header->sample_count > kMaxRasterSamples))
+        return Status::kMalformed;
     if (std::max(width, height) > limits.max_side || header->sample_count > limits.max_samples)
         return Status::kLimitExceeded;
     return Status::kOk;
@@ -194,8 +197,7 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     reader.skip(preamble.position());
     uint8_t kind = 0, bits = 0, levels = 0;
     if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels)) return Status::kMalformed;
-    if ((kind & kReservedFlags) != 0 || (kind & kLayoutMask) > static_cast<uint8_t>(FileLayout::kTiles))
-        return Status::kUnsupportedVersion;
+    if ((kind & kReservedFlags) != 0) return Status::kUnsupportedVersion;
     if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels) return Status::kMalformed;
     header->layout = static_cast<FileLayout>(kind & kLayoutMask);
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
@@ -206,7 +208,7 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
         if (!reader.read_u8(&cut) || cut == 0 || cut >= levels) return Status::kMalformed;
         header->cut_levels = cut;
     }
-    const Status shape = header->layout == FileLayout::kCharts  ? parse_rectangle(&reader, limits, header)
+    const Status shape = header->is_rectangle()                 ? parse_rectangle(&reader, limits, header)
                          : header->layout == FileLayout::kTiles ? parse_tiles(&reader, limits, header)
                                                                 : parse_sides(&reader, limits, file, header);
     if (shape != Status::kOk) return shape;
@@ -216,7 +218,8 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     if (header->coding == Coding::kLossy &&
         (!reader.read_f32(&header->quantizer) || !in_range(header->quantizer, kMinQuantizer, kMaxQuantizer) ||
          !reader.read_u8(&header->tangential) || !reader.read_u8(&header->cell_area) ||
-         (header->tangential == 0 && header->cell_area != 0)))
+         (header->tangential == 0 && header->cell_area != 0) ||
+         (header->tangential != 0 && header->layout == FileLayout::kRaster)))
         return Status::kMalformed;
     if ((kind & kBoundsFlag) && !parse_bounds(&reader, file, header)) return Status::kMalformed;
     header->index = file.subspan(reader.position(), body - reader.position());
@@ -246,7 +249,7 @@ std::vector<uint8_t> serialize_header(const Header& header, std::span<const Chun
     rest.push_back(static_cast<uint8_t>(header.bits));
     rest.push_back(static_cast<uint8_t>(header.level_count));
     if (header.cut_levels > 0) rest.push_back(static_cast<uint8_t>(header.cut_levels));
-    if (header.layout == FileLayout::kCharts) {
+    if (header.is_rectangle()) {
         append_leb128(header.width, &rest);
         append_leb128(header.height, &rest);
     } else if (header.layout == FileLayout::kTiles) {

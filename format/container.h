@@ -22,12 +22,14 @@ enum class FileLayout : uint8_t {
     kSquares = 0,  // gim: one square image per component
     kCharts = 1,   // mcgim: one image of charts (format/chart_table.h)
     kTiles = 2,    // tiles: one complex of square tiles (format/quad_complex.h)
+    kRaster = 3,   // mcgim: an imported image (format/raster_table.h)
 };
 
 enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };
 
 enum class ChunkType : uint32_t {
-    kSeams = 0,          // SEAM, critical: the sidebands of all images, or the chart table, or how tiles are glued
+    kSeams = 0,          // SEAM, critical: the sidebands of all images, the chart table, how tiles are glued, what a
+                         // raster holds
     kLevel = 1,          // LEVL, critical: one level of all images; coarsest first
     kText = 2,           // META, optional: UTF-8 text about the file
     kNormals = 3,        // NRML, optional: normals at a resolution of their own (format/plane_code.h)
@@ -48,6 +50,7 @@ inline constexpr ContainerLimits kNoLimits = {UINT64_MAX, UINT32_MAX, UINT32_MAX
 inline constexpr uint32_t kMinBits = 8, kMaxBits = 20;
 inline constexpr uint32_t kMaxImages = 65536;
 inline constexpr uint32_t kMaxAtlasSide = 65536;
+inline constexpr uint64_t kMaxRasterSamples = uint64_t{1} << 31;
 inline constexpr uint32_t kMaxLevels = 14;
 inline constexpr size_t kErrorsOfLevel = 2, kBoxSize = 7;  // bytes of a header (format/bounds.h)
 inline constexpr uint64_t kMaxIndexSize = uint64_t{1} << 24;
@@ -104,7 +107,7 @@ struct Header : Units {
     uint32_t level_count = 0;                 // of the file before it was cut
     uint32_t cut_levels = 0;                  // so many of them, the finest ones, are cut off
     std::span<const uint8_t> side_exponents;  // kSquares: one per image; side = 2^j + 1
-    uint32_t width = 0, height = 0;           // kCharts: of the rectangle that the charts are packed into
+    uint32_t width = 0, height = 0;           // kCharts, kRaster: of the rectangle
     TileShape tiles;                          // kTiles
     // Both are empty, or both are there (format/bounds.h).
     std::span<const uint8_t> level_errors;  // codes of the RMS and the maximum error of each level kept, coarsest first
@@ -117,6 +120,7 @@ struct Header : Units {
     uint64_t sample_count = 0;  // of all images or of the atlas of tiles, at the finest level kept; or of the rectangle
     uint64_t file_size = 0;
 
+    bool is_rectangle() const { return layout == FileLayout::kCharts || layout == FileLayout::kRaster; }
     uint32_t image_count() const {
         return layout == FileLayout::kSquares ? static_cast<uint32_t>(side_exponents.size()) : 1;
     }

@@ -244,6 +244,52 @@ GIM_API gim_status gim_read_labels_info(const gim_info* info, const void* bytes,
 GIM_API gim_status gim_decode_labels(const gim_info* info, const void* bytes, size_t size, uint32_t image,
                                      uint32_t level, uint8_t* labels, void* scratch, size_t scratch_size);
 
+/* An imported image: the array of another program, as numbers of each channel. A file of layout GIM_LAYOUT_MCGIM may hold
+ * one instead of charts. It has one level. gim_decode_mesh and gim_decode_grid give its surface. */
+enum {
+    GIM_SAMPLE_FLOAT32 = 0,
+    GIM_SAMPLE_FLOAT64 = 1,
+    GIM_SAMPLE_FLOAT16 = 2,
+    GIM_SAMPLE_UINT8 = 3,
+    GIM_SAMPLE_INT8 = 4,
+    GIM_SAMPLE_UINT16 = 5,
+    GIM_SAMPLE_INT16 = 6,
+    GIM_SAMPLE_UINT32 = 7,
+    GIM_SAMPLE_INT32 = 8
+};
+enum { GIM_MASK_NONE = 0, GIM_MASK_ARRAY = 1, GIM_MASK_CHANNEL = 2 };
+typedef struct gim_raster_info {
+    uint32_t width, height;     /* samples */
+    uint32_t channels;          /* numbers of a sample, at least 3: x, y, z, then others. The mask is none of them */
+    uint32_t sample_type;       /* of the array that was imported: GIM_SAMPLE_... */
+    uint32_t is_channels_first; /* 1: that array had the shape channels, height, width. 0: height, width, channels */
+    uint32_t mask;              /* where its mask was. GIM_MASK_NONE: undefined samples were NaN, or there were none;
+                                   GIM_MASK_ARRAY: in another array; GIM_MASK_CHANNEL + k: in channel k of the array */
+    uint32_t mask_value;        /* what that said of defined samples; 0 of others */
+    uint64_t prefix_size;       /* bytes of the file, from its start, that the samples need */
+    uint64_t scratch_size;      /* bytes of scratch that gim_decode_raster needs */
+} gim_raster_info;
+
+/* Returns GIM_NO_SUCH_PLANE if the file holds no imported image. Cost O(chunk). */
+GIM_API gim_status gim_read_raster_info(const gim_info* info, const void* bytes, size_t size, gim_raster_info* raster);
+
+/* A number v of the channel stands for origin + step * v. */
+typedef struct gim_raster_channel {
+    uint32_t bits;       /* numbers are 0 .. 2^bits - 1 */
+    double origin, step; /* step > 0. Of whole numbers that are exact: the least one, and 1 */
+} gim_raster_channel;
+
+/* Returns GIM_BAD_ARGUMENT beyond the last channel. Cost O(chunk). */
+GIM_API gim_status gim_read_raster_channel(const gim_info* info, const void* bytes, size_t size, uint32_t channel,
+                                           gim_raster_channel* out);
+
+/* Decodes all channels.
+ * values   width*height*channels numbers, sample by sample, row by row; 0 of undefined samples
+ * mask     width*height bytes: 1 if the sample is defined, else 0
+ * scratch  as for positions. On failure values and mask are unspecified. Cost O(samples * channels) */
+GIM_API gim_status gim_decode_raster(const gim_info* info, const void* bytes, size_t size, int32_t* values,
+                                     uint8_t* mask, void* scratch, size_t scratch_size);
+
 /* Describes chunk i of the index, for tools. Returns GIM_BAD_ARGUMENT past the last chunk. */
 typedef struct gim_chunk {
     char name[8];  /* zero-terminated, as in the spec; "????" if this reader does not know it */

@@ -333,6 +333,7 @@ struct EncodeReport {
     uint32_t charts = 0;                               // kMcgim
     uint32_t tiles = 0;                                // kTiles
     uint64_t defined_samples = 0;                      // kMcgim
+    uint64_t border_samples = 0, open_samples = 0;     // of an imported image; open: one surface point with no other
     double packing_efficiency = 0;                     // kMcgim: defined_samples / samples
     double cut_length = 0;                             // object units
     double stretch_efficiency = 0;                     // 1 / (normalised L2 stretch)^2; 0..1, 1: uniform and isotropic
@@ -372,5 +373,34 @@ Result<Encoded> encode(const TriangleMesh& mesh, const EncodeOptions& options, c
 // Boundary samples within `weld_tolerance` (object units) of each other are glued if that gives a closed surface.
 Result<Encoded> encode_image(const std::vector<float>& channels, uint32_t side, double weld_tolerance,
                              const EncodeOptions& options, const Progress& progress = {});
+
+// The type of the numbers of an image of another program, in the order of GIM_SAMPLE_... (gim/decoder.h).
+enum class SampleType { kFloat32, kFloat64, kFloat16, kUint8, kInt8, kUint16, kInt16, kUint32, kInt32 };
+constexpr bool is_whole(SampleType type) { return type >= SampleType::kUint8; }
+
+// A multi-chart image of another program. Doubles hold the numbers of all types exactly.
+struct RasterImage {
+    // Where the array had its mask. kNowhere: undefined samples are NaN, or there are none.
+    enum class Mask : uint32_t { kNowhere, kArray, kChannel };
+
+    uint32_t width = 0, height = 0;
+    uint32_t channels = 3;                  // x, y, z, then others. The mask is none of them
+    std::vector<double> values;             // width * height * channels, sample by sample, row by row
+    std::vector<uint8_t> defined;           // per sample; not 0: it is defined
+    SampleType type = SampleType::kFloat32;
+    // How the array looked. The file keeps it, so that a decoder can make the same array again.
+    bool is_channels_first = false;
+    Mask mask = Mask::kNowhere;
+    uint32_t mask_channel = 3;              // kChannel: its place among the channels of the array
+    uint32_t mask_value = 1;                // what the mask says of defined samples; it says 0 of others
+    std::vector<std::string> names = {};    // of the channels; empty: nobody named them
+};
+
+// Encodes such an image as it is: no sample moves to another place. Whole numbers of up to 20 bits are exact with
+// RateTarget::kLossless; floats are rounded to options.bits of the bounding box, those of each channel from the fourth on
+// to as many bits of its range. Other targets make the positions coarser, never the other channels; the reference is the
+// image's own surface. Border samples that are not farther apart than options.weld_tolerance are one point of the surface;
+// unset: a millionth of the diagonal for floats, 0 for whole numbers. Layout, size, charts and fit are not read.
+Result<Encoded> encode_raster(const RasterImage& image, const EncodeOptions& options, const Progress& progress = {});
 
 }  // namespace gim

@@ -1,0 +1,139 @@
+#include "encoder/raster/glue_raster.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <unordered_map>
+
+#include "format/chart_ramp.h"
+
+namespace gim {
+namespace {
+
+constexpr int64_t kSideBySide = 2;  // samples
+
+using Cell = std::array<int64_t, 3>;
+struct CellHash {
+    size_t operator()(const Cell& c) const {
+        uint64_t hash = 0;
+        for (const int64_t k : c) hash = (hash ^ static_cast<uint64_t>(k)) * 0x9E3779B97F4A7C15u;
+        return static_cast<size_t>(hash ^ hash >> 32);
+    }
+};
+
+// The first samples of points, by where they are.
+class PointIndex {
+  public:
+    PointIndex(uint32_t width, const std::vector<Vec3>& positions, double tolerance)
+        : width_(width), positions_(positions), tolerance_(tolerance), size_(tolerance > 0 ? 2 * tolerance : 1) {}
+
+    // Returns the nearest one within the tolerance; kNone if there is none.
+    uint32_t nearest(uint32_t sample) const {
+        const Cell center = cell_of(sample);
+        uint32_t best = kNone;
+        double least = INFINITY;
+        for (int64_t k = 0; k < 27; ++k) {
+            const auto at = cells_.find({center[0] + k % 3 - 1, center[1] + k / 3 % 3 - 1, center[2] + k / 9 - 1});
+            if (at == cells_.end()) continue;
+            for (const uint32_t other : at->second) {
+                const double distance = (positions_[other] - positions_[sample]).norm();
+                if (distance > tolerance_ || distance >= least || (distance > 0 && lie_side_by_side(sample, other)))
+                    continue;
+                best = other;
+                least = distance;
+            }
+        }
+        return best;
+    }
+    void add(uint32_t sample) { cells_[cell_of(sample)].push_back(sample); }
+
+  private:
+    Cell cell_of(uint32_t sample) const {
+        const Vec3 p = positions_[sample] / size_;
+        const auto number = [](double x) { return static_cast<int64_t>(std::clamp(std::floor(x), -0x1p60, 0x1p60)); };
+        return {number(p.x()), number(p.y()), number(p.z())};
+    }
+    bool lie_side_by_side(uint32_t a, uint32_t b) const {
+        return std::abs(int64_t{a / width_} - int64_t{b / width_}) <= kSideBySide &&
+               std::abs(int64_t{a % width_} - int64_t{b % width_}) <= kSideBySide;
+    }
+
+    uint32_t width_;
+    const std::vector<Vec3>& positions_;
+    double tolerance_, size_;
+    std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells_;
+};
+
+void find_depths(const RasterImage& image, RasterGluing& g) {
+    const uint32_t w = image.width, h = image.height;
+    const auto is_defined = [&](uint32_t r, uint32_t c) { return r < h && c < w && image.defined[size_t{r} * w + c]; };
+    g.depth.assign(image.defined.size(), kUndefined);
+    for (uint32_t r = 0; r < h; ++r) {
+        for (uint32_t c = 0; c < w; ++c) {
+            if (!is_defined(r, c)) continue;
+            const bool is_inside =
+                is_defined(r - 1, c) && is_defined(r + 1, c) && is_defined(r, c - 1) && is_defined(r, c + 1);
+            g.depth[size_t{r} * w + c] = is_inside ? kInside : kOnBorder;
+            ++g.defined;
+            g.border += is_inside ? 0 : 1;
+        }
+    }
+}
+
+uint32_t count_pieces(const RasterGluing& g, uint32_t width, uint32_t height) {
+    std::vector<uint8_t> seen(g.depth.size(), 0);
+    std::vector<uint32_t> queue;
+    uint32_t pieces = 0;
+    for (uint32_t start = 0; start < seen.size(); ++start) {
+        if (seen[start] || g.depth[start] == kUndefined) continue;
+        ++pieces;
+        seen[start] = 1;
+        queue.assign(1, start);
+        while (!queue.empty()) {
+            const uint32_t row = queue.back() / width, column = queue.back() % width;
+            queue.pop_back();
+            for (uint32_t r = row - 1; r != row + 2; ++r) {
+                for (uint32_t c = column - 1; c != column + 2; ++c) {
+                    if (r >= height || c >= width) continue;
+                    const uint32_t i = r * width + c;
+                    if (seen[i] || g.depth[i] == kUndefined) continue;
+                    seen[i] = 1;
+                    queue.push_back(i);
+                }
+            }
+        }
+    }
+    return pieces;
+}
+
+}  // namespace
+
+RasterGluing glue_raster(const RasterImage& image, const std::vector<Vec3>& positions, double tolerance) {
+    RasterGluing g;
+    find_depths(image, g);
+    g.pieces = count_pieces(g, image.width, image.height);
+    const auto count = static_cast<uint32_t>(g.depth.size());
+    g.origin.resize(count);
+    g.point.resize(count, kNone);
+    std::vector<uint8_t> is_shared(count, 0);
+    PointIndex index(image.width, positions, tolerance);
+    for (uint32_t i = 0; i < count; ++i) {
+        g.origin[i] = i;
+        if (g.depth[i] == kUndefined) continue;
+        if (g.depth[i] == kOnBorder) {
+            const uint32_t other = index.nearest(i);
+            if (other == kNone) {
+                index.add(i);
+            } else {
+                g.origin[i] = other;
+                is_shared[i] = is_shared[other] = 1;
+            }
+        }
+        g.point[i] = g.origin[i] == i ? g.points++ : g.point[g.origin[i]];
+    }
+    for (uint32_t i = 0; i < count; ++i) g.open += g.depth[i] == kOnBorder && !is_shared[i] ? 1 : 0;
+    return g;
+}
+
+}  // namespace gim

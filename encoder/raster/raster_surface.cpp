@@ -1,0 +1,70 @@
+#include "encoder/raster/raster_surface.h"
+
+#include <array>
+
+#include "decoder/pyramid/vector3.h"
+#include "format/chart_ramp.h"
+#include "format/chart_split.h"
+
+namespace gim {
+namespace {
+
+// What chart_split asks.
+struct Grid {
+    const RasterGluing& gluing;
+    uint32_t width;
+
+    uint32_t index(uint32_t row, uint32_t column) const { return row * width + column; }
+    bool on_border(uint32_t row, uint32_t column) const { return gluing.depth[index(row, column)] == kOnBorder; }
+    uint32_t point(uint32_t row, uint32_t column) const { return gluing.point[index(row, column)]; }
+};
+
+}  // namespace
+
+std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t width, uint32_t height,
+                                       std::span<const float> units) {
+    const Grid grid = {gluing, width};
+    const auto distance = [&](uint32_t a, uint32_t b) {
+        return squared_distance(&units[size_t{a} * 3], &units[size_t{b} * 3]);
+    };
+    std::vector<Triangle> triangles;
+    const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
+        const auto& point = gluing.point;
+        if (point[a] != point[b] && point[b] != point[c] && point[c] != point[a]) triangles.push_back({a, b, c});
+    };
+    for (uint32_t row = 0; row + 1 < height; ++row) {
+        for (uint32_t column = 0; column + 1 < width; ++column) {
+            const uint32_t i = grid.index(row, column);
+            std::array<uint32_t, 4> defined{};
+            uint32_t count = 0;
+            for (const uint32_t corner : {i, i + 1, i + width + 1, i + width}) {
+                if (gluing.depth[corner] != kUndefined) defined[count++] = corner;
+            }
+            const auto [a, b, c, d] = defined;
+            if (count == 3) add(a, b, c);
+            if (count < 4) continue;
+            const Split split = chart_split(grid, row, column);
+            if (split == Split::kMain || (split == Split::kShorter && distance(a, c) <= distance(b, d))) {
+                add(a, b, c);
+                add(a, c, d);
+            } else {
+                add(a, b, d);
+                add(b, c, d);
+            }
+        }
+    }
+    return triangles;
+}
+
+Mesh raster_surface(const RasterGluing& gluing, std::span<const Triangle> triangles,
+                    const std::vector<Vec3>& positions) {
+    Mesh mesh;
+    for (uint32_t i = 0; i < positions.size(); ++i) {
+        if (gluing.depth[i] != kUndefined && gluing.origin[i] == i) mesh.positions.push_back(positions[i]);
+    }
+    for (const Triangle& t : triangles)
+        mesh.triangles.push_back({gluing.point[t[0]], gluing.point[t[1]], gluing.point[t[2]]});
+    return mesh;
+}
+
+}  // namespace gim
