@@ -45,8 +45,8 @@ gim_status gim_read_info(const void* bytes, size_t size, const gim_limits* limit
     if (Status s = parse_header(span_of(bytes, size), l, &header); s != Status::kOk) return code(s);
     *info = {};
     info->version = kFormatVersion;
-    info->layout = header.layout == FileLayout::kRaster ? uint32_t{GIM_LAYOUT_MCGIM}
-                                                        : static_cast<uint32_t>(header.layout);
+    info->layout =
+        header.layout == FileLayout::kRaster ? uint32_t{GIM_LAYOUT_MCGIM} : static_cast<uint32_t>(header.layout);
     info->coding = static_cast<uint32_t>(header.coding);
     info->bits = header.bits;
     info->image_count = header.image_count();

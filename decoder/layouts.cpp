@@ -20,10 +20,13 @@ constexpr LevelReader kReaders[] = {
      raster_plane_scratch_size, decode_raster_plane},
 };
 static_assert(static_cast<size_t>(FileLayout::kSquares) == 0 && static_cast<size_t>(FileLayout::kCharts) == 1 &&
-              static_cast<size_t>(FileLayout::kTiles) == 2 && static_cast<size_t>(FileLayout::kRaster) == 3);
+              static_cast<size_t>(FileLayout::kTiles) == 2);
+constexpr size_t kRasters = 3;
 
 }  // namespace
 
-const LevelReader& reader_of(FileLayout layout) { return kReaders[static_cast<size_t>(layout)]; }
+const LevelReader& reader_of(FileLayout layout) {
+    return kReaders[layout == FileLayout::kRaster ? kRasters : static_cast<size_t>(layout)];
+}
 
 }  // namespace gim

@@ -25,6 +25,8 @@ namespace {
 
 constexpr int kStepsPerOctave = 8;
 constexpr double kFloatTolerance = 1e-6;  // diagonals
+// Samples of a comparison: thousands of small images must not take as long as large ones.
+constexpr size_t kSamplesPerTriangle = 16, kFewestSamples = 20000;
 
 using File = std::vector<uint8_t>;
 
@@ -55,6 +57,11 @@ class RasterRun {
                 return within_error(rate);
         }
     }
+    // Samples of the comparisons that decide and that are reported.
+    uint32_t samples() const {
+        const size_t wanted = kSamplesPerTriangle * reference_.mesh().triangles.size();
+        return static_cast<uint32_t>(std::clamp<size_t>(wanted, kFewestSamples, CompareOptions{}.samples));
+    }
     Result<Comparison> compare(const File& file, uint32_t samples, bool defects) const {
         CompareOptions options;
         options.samples = samples;
@@ -80,7 +87,8 @@ class RasterRun {
         std::vector<float> units;
         for (const Vec3& p : positions_) {
             for (int k = 0; k < 3; ++k)
-                units.push_back(static_cast<float>((p[k] - scale_.low[static_cast<size_t>(k)]) / double{scale_.units.step}));
+                units.push_back(
+                    static_cast<float>((p[k] - scale_.low[static_cast<size_t>(k)]) / double{scale_.units.step}));
         }
         return raster_surface(gluing_, raster_triangles(gluing_, image_.width, image_.height, units), positions_);
     }
@@ -114,14 +122,16 @@ class RasterRun {
             return rate.kind == RateTarget::Kind::kPsnr ? c.psnr < rate.value
                                                         : c.hausdorff > rate.value * reference_.diagonal();
         };
-        GIM_TRY(step, first_step([&](int k) { return misses(file_at(k), RateSearchValues::kTrialSamples); }));
+        GIM_TRY(step, first_step([&](int k) {
+                    return misses(file_at(k), std::min(samples(), RateSearchValues::kTrialSamples));
+                }));
         for (; step > 0; --step) {
             File file = file_at(step - 1);
-            GIM_TRY(is_missed, misses(file, CompareOptions{}.samples));
+            GIM_TRY(is_missed, misses(file, samples()));
             if (!is_missed) return file;
         }
         File finest = write_raster(image_, scale_, gluing_, 0);
-        GIM_TRY(is_missed, misses(finest, CompareOptions{}.samples));
+        GIM_TRY(is_missed, misses(finest, samples()));
         if (!is_missed) return finest;
         return Error{Stage::kCode, "out of reach with " + std::to_string(scale_.units.bits) +
                                        " bits per coordinate; take more --bits"};
@@ -174,7 +184,7 @@ Result<Encoded> run_stages(const RasterImage& image, const EncodeOptions& option
     encoded.bytes = std::move(file);
     describe_file(encoded.bytes, report);
     clock.begin(Stage::kCompare);
-    GIM_TRY(error, run.compare(encoded.bytes, CompareOptions{}.samples, true));
+    GIM_TRY(error, run.compare(encoded.bytes, run.samples(), true));
     report.error = error;
     report.folds = error.defects->folded_faces;
     GIM_TRY(levels, measure_levels(encoded.bytes, run.reference(), error, options.threads));

@@ -14,8 +14,8 @@ namespace {
 
 constexpr size_t kPreambleSize = kMagic.size() + 1;  // magic and version
 constexpr size_t kCrcSize = 4;
-constexpr uint8_t kLossyFlag = 0x04, kBoundsFlag = 0x08, kWideOriginFlag = 0x10, kCutFlag = 0x20, kReservedFlags = 0xC0,
-                  kLayoutMask = 0x03;
+constexpr uint8_t kLossyFlag = 0x04, kBoundsFlag = 0x08, kWideOriginFlag = 0x10, kCutFlag = 0x20, kReservedFlags = 0x80,
+                  kLayoutMask = 0x43;
 constexpr uint8_t kTileExponentMask = 0x0F, kSharpWaveletFlag = 0x10, kSharpEdgesFlag = 0x20, kReservedTileFlags = 0xC0;
 
 bool parse_chunk(ByteReader* reader, Chunk* chunk) {
@@ -197,9 +197,11 @@ Status parse_header(std::span<const uint8_t> file, const ContainerLimits& limits
     reader.skip(preamble.position());
     uint8_t kind = 0, bits = 0, levels = 0;
     if (!reader.read_u8(&kind) || !reader.read_u8(&bits) || !reader.read_u8(&levels)) return Status::kMalformed;
-    if ((kind & kReservedFlags) != 0) return Status::kUnsupportedVersion;
+    const auto layout = static_cast<FileLayout>(kind & kLayoutMask);
+    if ((kind & kReservedFlags) != 0 || (layout != FileLayout::kRaster && layout > FileLayout::kTiles))
+        return Status::kUnsupportedVersion;
     if (bits < kMinBits || bits > kMaxBits || levels == 0 || levels > kMaxLevels) return Status::kMalformed;
-    header->layout = static_cast<FileLayout>(kind & kLayoutMask);
+    header->layout = layout;
     header->coding = kind & kLossyFlag ? Coding::kLossy : Coding::kLossless;
     header->bits = bits;
     header->level_count = levels;

@@ -18,11 +18,12 @@ namespace gim {
 inline constexpr std::array<uint8_t, 7> kMagic = {0x89, 'G', 'I', 'M', 0x0D, 0x0A, 0x1A};
 inline constexpr uint8_t kFormatVersion = 1;
 
+// The numbers are bits of the header.
 enum class FileLayout : uint8_t {
-    kSquares = 0,  // gim: one square image per component
-    kCharts = 1,   // mcgim: one image of charts (format/chart_table.h)
-    kTiles = 2,    // tiles: one complex of square tiles (format/quad_complex.h)
-    kRaster = 3,   // mcgim: an imported image (format/raster_table.h)
+    kSquares = 0,    // gim: one square image per component
+    kCharts = 1,     // mcgim: one image of charts (format/chart_table.h)
+    kTiles = 2,      // tiles: one complex of square tiles (format/quad_complex.h)
+    kRaster = 0x41,  // mcgim: an imported image (format/raster_table.h)
 };
 
 enum class Coding : uint8_t { kLossless = 0, kLossy = 1 };

@@ -41,14 +41,14 @@ struct RasterGroup {
 // Arrays of the caller. An encoder fills in `depth` (any value but kUndefined where a sample is defined), `values` and
 // `origin`.
 struct RasterWork {
-    uint8_t* depth = nullptr;           // per sample: kOnBorder, kInside, kUndefined
-    int32_t* values = nullptr;          // per sample, all its channels
-    uint32_t* point = nullptr;          // per sample: the surface point, numbered by first appearance
-    uint32_t* link = nullptr;           // per sample: another sample of its point, or kNoLink
-    uint32_t* border = nullptr;         // the border samples, row by row
-    uint32_t* errors = nullptr;         // two rows of kRasterPredictors per column
-    uint32_t* magnitudes = nullptr;     // two rows of kRasterGroup per column
-    const uint32_t* origin = nullptr;   // encoder only, per sample: the first sample of its point
+    uint8_t* depth = nullptr;          // per sample: kOnBorder, kInside, kUndefined
+    int32_t* values = nullptr;         // per sample, all its channels
+    uint32_t* point = nullptr;         // per sample: the surface point, numbered by first appearance
+    uint32_t* link = nullptr;          // per sample: another sample of its point, or kNoLink
+    uint32_t* border = nullptr;        // the border samples, row by row
+    uint32_t* errors = nullptr;        // two rows of kRasterPredictors per column
+    uint32_t* magnitudes = nullptr;    // two rows of kRasterGroup per column
+    const uint32_t* origin = nullptr;  // encoder only, per sample: the first sample of its point
 };
 
 template <class Coder>
@@ -66,7 +66,17 @@ class RasterCoder {
 
   private:
     // The neighbours that come before a sample.
-    enum Place : uint32_t { kWest, kNorth, kNorthWest, kNorthEast, kWest2, kNorth2, kNorth2West, kNorth2East, kNorthWest2 };
+    enum Place : uint32_t {
+        kWest,
+        kNorth,
+        kNorthWest,
+        kNorthEast,
+        kWest2,
+        kNorth2,
+        kNorth2West,
+        kNorth2East,
+        kNorthWest2
+    };
     static constexpr uint32_t kPlaces = 9, kBeside = 4;  // the first four touch it
 
     struct Models {
@@ -106,13 +116,14 @@ class RasterCoder {
     void blend(const RasterGroup& group, Sample& s) const;
     uint32_t links_to_follow(const Sample& s, std::array<uint32_t, kBeside>& found, uint32_t* linked) const;
     bool code_link(Models& models, const Sample& s, uint32_t* to);
-    bool code_values(Models& models, const RasterGroup& group, const Sample& s, bool is_linked);
+    bool code_values(Models& models, const RasterGroup& group, const Sample& s,
+                     const std::array<int32_t, kRasterGroup>& expected, bool is_linked);
     void learn(const RasterGroup& group, const Sample& s);
 
     Coder& coder_;
     RasterShape shape_;
     RasterWork work_;
-    uint32_t first_ = 0;         // channel of the group
+    uint32_t first_ = 0;  // channel of the group
     uint32_t points_ = 0;
     uint32_t border_count_ = 0;  // so far
     uint32_t last_ = kNoLink;    // the sample coded last
@@ -154,6 +165,13 @@ void RasterCoder<Coder>::look_around(Sample& s) const {
     constexpr uint8_t kUp[kPlaces] = {0, 1, 1, 1, 0, 2, 2, 2, 1};
     constexpr int8_t kRight[kPlaces] = {-1, 0, -1, 1, -2, 0, -1, 1, -2};
     s.defined = 0;
+    if (s.row >= 2 && s.column >= 2 && s.column + 1 < shape_.columns) {  // what follows, but quicker
+        for (uint32_t p = 0; p < kPlaces; ++p) {
+            s.places[p] = s.index - kUp[p] * shape_.columns + static_cast<uint32_t>(int32_t{kRight[p]});
+            s.defined |= work_.depth[s.places[p]] != kUndefined ? 1u << p : 0u;
+        }
+        return;
+    }
     for (uint32_t p = 0; p < kPlaces; ++p) {
         if (!is_defined(s.row - kUp[p], s.column + static_cast<uint32_t>(int32_t{kRight[p]}))) continue;
         s.defined |= 1u << p;
@@ -163,35 +181,31 @@ void RasterCoder<Coder>::look_around(Sample& s) const {
 
 template <class Coder>
 void RasterCoder<Coder>::predict(const RasterGroup& group, Sample& s) const {
-    // What each predictor needs, and its terms.
-    struct Predictor {
-        uint32_t needs;
-        std::array<int8_t, kPlaces> weight;
-    };
-    constexpr auto make = [](std::array<int8_t, kPlaces> weight) {
-        Predictor p{0, weight};
-        for (uint32_t k = 0; k < kPlaces; ++k) p.needs |= weight[k] != 0 ? 1u << k : 0u;
-        return p;
-    };
-    static constexpr std::array<Predictor, kRasterPredictors> kAll = {
-        make({1, 1, -1, 0, 0, 0, 0, 0, 0}),  make({2, 0, 0, 0, -1, 0, 0, 0, 0}),  make({0, 2, 0, 0, 0, -1, 0, 0, 0}),
-        make({1, -1, 0, 1, 0, 0, 0, 0, 0}),  make({0, 1, 0, 1, 0, 0, 0, -1, 0}),  make({1, 2, -2, 0, 0, -1, 1, 0, 0}),
-        make({2, 1, -2, 0, -1, 0, 0, 0, 1}),
-    };
+    constexpr auto places = [](auto... p) { return (0u | ... | (1u << p)); };
+    constexpr uint32_t kNeeds[kRasterPredictors] = {places(kWest, kNorth, kNorthWest),
+                                                    places(kWest, kWest2),
+                                                    places(kNorth, kNorth2),
+                                                    places(kWest, kNorth, kNorthEast),
+                                                    places(kNorth, kNorthEast, kNorth2East),
+                                                    places(kWest, kNorth, kNorthWest, kNorth2, kNorth2West),
+                                                    places(kWest, kNorth, kNorthWest, kWest2, kNorthWest2)};
     std::array<std::array<int32_t, kPlaces>, kRasterGroup> around{};
     for (uint32_t p = 0; p < kPlaces; ++p) {
         if ((s.defined >> p & 1) == 0) continue;
         for (uint32_t k = 0; k < group.count; ++k) around[k][p] = values_of(s.places[p])[k];
     }
     s.usable = 0;
-    for (uint32_t i = 0; i < kRasterPredictors; ++i) {
-        if ((kAll[i].needs & ~s.defined) != 0) continue;
-        s.usable |= 1u << i;
-        for (uint32_t k = 0; k < group.count; ++k) {
-            int32_t sum = 0;
-            for (uint32_t p = 0; p < kPlaces; ++p) sum += kAll[i].weight[p] * around[k][p];
-            s.predictions[i][k] = sum;
-        }
+    for (uint32_t i = 0; i < kRasterPredictors; ++i) s.usable |= (kNeeds[i] & ~s.defined) == 0 ? 1u << i : 0u;
+    for (uint32_t k = 0; k < group.count; ++k) {  // those that are not usable are not read
+        const auto& [w, n, nw, ne, w2, n2, n2w, n2e, nw2] = around[k];
+        auto& p = s.predictions;
+        p[0][k] = w + n - nw;
+        p[1][k] = 2 * w - w2;
+        p[2][k] = 2 * n - n2;
+        p[3][k] = w + ne - n;
+        p[4][k] = n + ne - n2e;
+        p[5][k] = w + 2 * (n - nw) - n2 + n2w;
+        p[6][k] = n + 2 * (w - nw) - w2 + nw2;
     }
     if (s.usable != 0) {
         blend(group, s);
@@ -218,7 +232,8 @@ void RasterCoder<Coder>::blend(const RasterGroup& group, Sample& s) const {
     std::array<const uint32_t*, kBeside> near{};
     for (uint32_t p = 0; p < kBeside; ++p) {
         if ((s.defined >> p & 1) == 0) continue;
-        near[p] = errors_of(p == kWest ? s.row : s.row - 1, s.places[p] - (s.row - (p == kWest ? 0 : 1)) * shape_.columns);
+        near[p] =
+            errors_of(p == kWest ? s.row : s.row - 1, s.places[p] - (s.row - (p == kWest ? 0 : 1)) * shape_.columns);
     }
     std::array<uint32_t, kRasterPredictors> errors{};
     uint32_t least = UINT32_MAX;
@@ -273,7 +288,8 @@ uint32_t RasterCoder<Coder>::links_to_follow(const Sample& s, std::array<uint32_
     for (uint32_t p = 0; p < kBeside; ++p) {
         if ((s.defined >> p & 1) == 0 || work_.link[s.places[p]] == kNoLink) continue;
         ++*linked;
-        const uint32_t row = work_.link[s.places[p]] / shape_.columns, column = work_.link[s.places[p]] % shape_.columns;
+        const uint32_t row = work_.link[s.places[p]] / shape_.columns,
+                       column = work_.link[s.places[p]] % shape_.columns;
         for (uint32_t r = row - 1; r != row + 2; ++r) {
             for (uint32_t c = column - 1; c != column + 2; ++c) consider(r, c);
         }
@@ -306,7 +322,8 @@ bool RasterCoder<Coder>::code_link(Models& models, const Sample& s, uint32_t* to
     if (border_count_ == 0 || !coder_.code_bit(models.leaps[count > 0], target != kNoLink)) return true;
     uint32_t place = 0;
     if constexpr (Coder::kWrites)
-        place = static_cast<uint32_t>(std::lower_bound(work_.border, work_.border + border_count_, target) - work_.border);
+        place =
+            static_cast<uint32_t>(std::lower_bound(work_.border, work_.border + border_count_, target) - work_.border);
     place = coder_.code_raw(place & 0x1FFF, std::min<uint32_t>(std::bit_width(border_count_ - 1), 13)) |
             coder_.code_raw(place >> 13, std::max<uint32_t>(std::bit_width(border_count_ - 1), 13) - 13) << 13;
     if (place >= border_count_) return false;
@@ -315,7 +332,8 @@ bool RasterCoder<Coder>::code_link(Models& models, const Sample& s, uint32_t* to
 }
 
 template <class Coder>
-bool RasterCoder<Coder>::code_values(Models& models, const RasterGroup& group, const Sample& s, bool is_linked) {
+bool RasterCoder<Coder>::code_values(Models& models, const RasterGroup& group, const Sample& s,
+                                     const std::array<int32_t, kRasterGroup>& expected, bool is_linked) {
     int32_t* values = work_.values + size_t{s.index} * shape_.channels + first_;
     uint32_t* magnitudes = magnitudes_of(s.row, s.column);
     std::array<const uint32_t*, kBeside> near{};
@@ -341,13 +359,13 @@ bool RasterCoder<Coder>::code_values(Models& models, const RasterGroup& group, c
             if (k > 0) e = e / 2 + 90 * found[0];
             if (k > 1) e += 50 * found[1];
         }
-        const int32_t rest = values[k] - s.expected[k];
+        const int32_t rest = values[k] - expected[k];
         uint32_t magnitude = Coder::kWrites ? static_cast<uint32_t>(std::abs(rest)) : 0;
         if (!code_magnitude(coder_, models.values, k, e, false, &magnitude)) return false;
         bool is_negative = false;
         if (magnitude != 0)
             is_negative = coder_.code_bit(models.sign[k][3 * sign_at(kWest, k) + sign_at(kNorth, k)], rest < 0) != 0;
-        const int32_t value = s.expected[k] + (is_negative ? -1 : 1) * static_cast<int32_t>(magnitude);
+        const int32_t value = expected[k] + (is_negative ? -1 : 1) * static_cast<int32_t>(magnitude);
         if (value < 0 || value >> group.bits[k] != 0) return false;
         found[k] = magnitude;
         values[k] = value;
@@ -384,7 +402,7 @@ bool RasterCoder<Coder>::code_group(const RasterGroup& group) {
             predict(group, s);
             uint32_t to = kNoLink;
             bool is_copy = false;
-            Sample linked = s;
+            std::array<int32_t, kRasterGroup> expected = s.expected;
             if (group.has_links()) {
                 work_.link[s.index] = kNoLink;
                 if (work_.depth[s.index] == kOnBorder) {
@@ -398,15 +416,17 @@ bool RasterCoder<Coder>::code_group(const RasterGroup& group) {
                 if (work_.link[to] == kNoLink) work_.link[to] = s.index;
                 int32_t* values = work_.values + size_t{s.index} * shape_.channels + first_;
                 const int32_t* others = values_of(to);
-                std::copy_n(others, group.count, linked.expected.begin());
-                is_copy = coder_.code_bit(models.is_inexact, Coder::kWrites && !std::equal(others, others + group.count, values)) == 0;
+                std::copy_n(others, group.count, expected.begin());
+                is_copy = coder_.code_bit(models.is_inexact,
+                                          Coder::kWrites && !std::equal(others, others + group.count, values)) == 0;
                 if (is_copy) std::copy_n(others, group.count, values);
             }
-            if (!is_copy && !code_values(models, group, linked, to != kNoLink)) return false;
+            if (!is_copy && !code_values(models, group, s, expected, to != kNoLink)) return false;
             if (to != kNoLink) {
                 for (uint32_t k = 0; k < group.count; ++k) {
                     const int32_t rest = values_of(s.index)[k] - s.expected[k];
-                    magnitudes_of(s.row, s.column)[k] = static_cast<uint32_t>(std::abs(rest)) | (rest < 0 ? 0x80000000 : 0);
+                    magnitudes_of(s.row, s.column)[k] =
+                        static_cast<uint32_t>(std::abs(rest)) | (rest < 0 ? 0x80000000 : 0);
                 }
             }
             learn(group, s);

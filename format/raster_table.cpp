@@ -12,7 +12,8 @@ constexpr uint8_t kTypeMask = 0x0F, kChannelsFirstFlag = 0x10, kReservedTypeFlag
 
 bool read_channel(ByteReader* reader, RasterChannel* channel) {
     uint8_t bits = 0;
-    if (!reader->read_u8(&bits) || !reader->read_f32(&channel->origin) || !reader->read_f32(&channel->step)) return false;
+    if (!reader->read_u8(&bits) || !reader->read_f32(&channel->origin) || !reader->read_f32(&channel->step))
+        return false;
     channel->bits = bits;
     return bits >= 1 && bits <= kMaxBits && channel->origin >= -kMaxOrigin && channel->origin <= kMaxOrigin &&
            channel->step >= kMinStep && channel->step <= kMaxStep;
@@ -49,14 +50,9 @@ Status parse_raster_table(std::span<const uint8_t> payload, const Header& header
         return Status::kMalformed;
     const uint64_t groups = (channels + kRasterGroup - 1) / kRasterGroup;
     if (groups * samples > limits.max_samples) return Status::kLimitExceeded;
-    *table = {static_cast<uint32_t>(vertices),
-              static_cast<uint32_t>(triangles),
-              uint32_t{type} & kTypeMask,
-              (type & kChannelsFirstFlag) != 0,
-              static_cast<uint32_t>(mask),
-              static_cast<uint32_t>(mask_value),
-              static_cast<uint32_t>(channels),
-              payload.subspan(reader.position())};
+    *table = {static_cast<uint32_t>(vertices),  static_cast<uint32_t>(triangles),  uint32_t{type} & kTypeMask,
+              (type & kChannelsFirstFlag) != 0, static_cast<uint32_t>(mask),       static_cast<uint32_t>(mask_value),
+              static_cast<uint32_t>(channels),  payload.subspan(reader.position())};
     if (table->others.size() != (channels - kRasterGroup) * kChannelSize) return Status::kMalformed;
     RasterChannel channel;
     while (reader.left() > 0) {

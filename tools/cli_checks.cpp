@@ -32,8 +32,9 @@ CLI::Validator finite_range(double low, double high, const std::string& name) {
 
 void add_mesh_format(CLI::App* sub, std::string& format, const std::string& help) {
     sub->add_option("--format", format, help)
-        ->transform(CLI::IsMember({"ply", "obj", "off", "stl", "gltf", "glb", "gim"}, CLI::ignore_case).description(""))
-        ->type_name("ply|obj|off|stl|gltf|glb|gim");
+        ->transform(CLI::IsMember({"ply", "obj", "off", "stl", "gltf", "glb", "gim", "npz", "exr"}, CLI::ignore_case)
+                        .description(""))
+        ->type_name("ply|obj|off|stl|gltf|glb|gim|npz|exr");
 }
 
 void add_max_memory(CLI::App* sub, uint64_t& bytes) {

@@ -40,7 +40,7 @@ struct EncodeArguments {
     bool even = false;
     const CLI::Option *layout = nullptr, *size = nullptr, *node_side = nullptr, *charts = nullptr, *tiles = nullptr;
     std::optional<double> psnr, quality;
-    std::string max_error, weld;
+    std::string max_error, weld, mask_channel, channels;
     std::optional<uint64_t> bytes;
     uint32_t normals = 0;
     std::optional<uint32_t> colors;
@@ -209,6 +209,34 @@ void add_glb_options(CLI::App* sub, EncodeArguments& a) {
                   "readers do not fetch that file");
 }
 
+// Options of images of other programs.
+void add_raster_options(CLI::App* sub, EncodeArguments& a) {
+    sub->add_option(
+           "--mask-channel", a.mask_channel,
+           "Image: which channel is the mask, from 0 on; none: all are data. Default: an array 'mask', else NaN, "
+           "else channel 3 if there is one")
+        ->type_name("K|none")
+        ->check(CLI::Validator(
+            [](const std::string& text) -> std::string {
+                const bool is_number =
+                    !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
+                return is_number || text == "none" ? "" : "must be a number or none, not " + text;
+            },
+            "K|none"));
+    sub->add_option("--channels", a.channels,
+                    "Image: which axis of the array holds the channels. Default: the shape tells")
+        ->check(CLI::IsMember({"first", "last"}))
+        ->type_name("first|last");
+}
+
+void apply_raster(EncodeArguments& a) {
+    RasterOptions& raster = a.command.raster;
+    raster.no_mask = a.mask_channel == "none";
+    if (!a.mask_channel.empty() && !raster.no_mask)
+        raster.mask_channel = static_cast<uint32_t>(std::stoul(a.mask_channel));
+    if (!a.channels.empty()) raster.is_channels_first = a.channels == "first";
+}
+
 void add_report_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option("--json", a.command.json, "Write every figure of the run to this file (-: standard output)")
         ->type_name("REPORT");
@@ -236,6 +264,11 @@ Subcommand add_encode(CLI::App& app) {
         "name. If these smooth everything or nothing, the shape tells which edges are hard.\n"
         "MESH may also be a headerless geometry image named *.gim: float32, all x, then all y, then all z. The file\n"
         "size tells its side. gim imports it with the parametrization that it has.\n"
+        "MESH may also be a multi-chart image of another program, as .npz or .exr: x y z of each sample, a mask, "
+        "other\n"
+        "channels. Each sample stays where it is. With --lossless whole numbers are exact, and floats are rounded to\n"
+        "--bits of the bounding box. Borders that coincide are glued. gim decode OUT.gim BACK.npz gives the image "
+        "back.\n"
         "If OUT is a .glb and MESH is glTF, the scene stays: nodes, materials, animations, cameras, lights. Each mesh\n"
         "becomes a .gim in it (extension EXT_gim_geometry), with the options for each of them. A mesh that gim cannot\n"
         "carry stays as it is, with a warning: skinned, with morph targets, points, lines, smaller than its .gim.\n"
@@ -247,6 +280,7 @@ Subcommand add_encode(CLI::App& app) {
         "  gim encode bunny.ply bunny.gim --max-error 0.5%\n"
         "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
         "  gim encode bunny.ply bunny.gim --size 129 --normals 512\n"
+        "  gim encode atlas.npz atlas.gim --lossless\n"
         "  gim encode scene.glb small.glb --psnr 70\n"
         "  zcat bunny.ply.gz | gim encode - bunny.gim\n"
         "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done     several meshes");
@@ -257,6 +291,7 @@ Subcommand add_encode(CLI::App& app) {
     add_fit_options(sub, a);
     add_plane_options(sub, a);
     add_glb_options(sub, a);
+    add_raster_options(sub, a);
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     sub->add_option("--threads", a.command.options.threads,
                     "Number of threads, 0: all cores. The bytes do not depend on it")
@@ -268,6 +303,7 @@ Subcommand add_encode(CLI::App& app) {
                 apply_layout(*arguments);
                 apply_rate(*arguments);
                 apply_planes(*arguments);
+                apply_raster(*arguments);
                 arguments->command.options.density = !arguments->even;
                 return run_encode(arguments->command);
             }};

@@ -25,6 +25,7 @@ struct EncodeCommand {
     bool quiet = false;
     bool fallback = false;                       // GLB: also plain arrays, in a file of their own
     uint64_t max_memory = default_max_memory();  // for the mesh as read
+    RasterOptions raster;                        // of an image
 };
 int run_encode(const EncodeCommand& command);
 // If OUT is a GLB.

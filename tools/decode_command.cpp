@@ -10,6 +10,7 @@
 #include "tools/file.h"
 #include "tools/output_files.h"
 #include "tools/plane_write.h"
+#include "tools/raster_file.h"
 #include "tools/surface_write.h"
 
 namespace gim {
@@ -108,6 +109,17 @@ int decode_glb_file(const DecodeCommand& command, const Bytes& file, SurfaceForm
     return write_all_files(command, {{"OUT", command.output, std::move(glb.value())}});
 }
 
+// The imported image itself.
+int decode_raster_file(const DecodeCommand& command, const Bytes& file, RasterFormat format) {
+    const std::string input_name = shown_name(command.input, Direction::kRead);
+    if (command.level != 0) return report_error(input_name, {Stage::kInput, describe_status(GIM_NO_SUCH_LEVEL)});
+    const Result<RasterImage> image = decode_raster_image(file);
+    if (!image.ok()) return report_error(input_name, image.error());
+    Result<Bytes> bytes = write_raster_file(image.value(), format);
+    if (!bytes.ok()) return report_error(shown_name(command.output, Direction::kWrite), bytes.error());
+    return write_all_files(command, {{"OUT", command.output, std::move(bytes.value())}});
+}
+
 }  // namespace
 
 int run_decode(const DecodeCommand& command) {
@@ -115,9 +127,10 @@ int run_decode(const DecodeCommand& command) {
     const std::string output_name = shown_name(command.output, Direction::kWrite);
     const std::string extension = command.format.empty() ? extension_of(command.output) : command.format;
     const std::optional<SurfaceFormat> format = surface_format_of(extension);
-    if (!format)
-        return report_error(output_name, {Stage::kWrite, "unknown format; use ply, obj, off, stl, glb or exr"});
-    const std::string mtl = material_path(command, *format);
+    const std::optional<RasterFormat> image_format = raster_format_of({}, extension);
+    if (!format && !image_format)
+        return report_error(output_name, {Stage::kWrite, "unknown format; use ply, obj, off, stl, glb, exr or npz"});
+    const std::string mtl = format ? material_path(command, *format) : std::string();
     const std::array<NamedFile, 5> names = {{{"IN", command.input, Direction::kRead},
                                              {"OUT", command.output, Direction::kWrite},
                                              {"--normal-map", command.normal_map, Direction::kWrite},
@@ -127,6 +140,11 @@ int run_decode(const DecodeCommand& command) {
 
     const Result<Bytes> file = read_named(command.input);
     if (!file.ok()) return report_error(input_name, file.error());
+    if (image_format && is_gim(file.value()) && holds_raster(file.value()))
+        return decode_raster_file(command, file.value(), *image_format);
+    if (!format)
+        return report_error(input_name,
+                            {Stage::kInput, "this is no imported image, and .npz holds only those; decode to .exr"});
     if (detect_format(file.value(), "") == MeshFormat::kGltf) return decode_glb_file(command, file.value(), *format);
     const bool has_details = !command.plain && *format != SurfaceFormat::kExr;
     const Result<Images> images = decode_images(file.value(), command.level, WithPlanes::kYes,

@@ -24,6 +24,11 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
         case Input::Kind::kRawImage:
             return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
                                 progress);
+        case Input::Kind::kRaster:
+            if (options.layout != Layout::kMcgim && options.layout != Layout::kAuto)
+                return Error{Stage::kInput,
+                             "an image of charts has the layout mcgim; leave --layout out, or say mcgim"};
+            return encode_raster(input.raster, options, progress);
         case Input::Kind::kMesh:
             break;
     }
@@ -102,6 +107,10 @@ std::string summary(const EncodeCommand& command, const EncodeReport& report) {
     if (report.charts > 0) {
         print_line(format_line("charts", std::to_string(report.charts) + ", " +
                                              fixed(100 * report.packing_efficiency, 1) + " % of the samples defined"));
+    }
+    if (report.border_samples > 0) {
+        print_line(format_line("border samples", with_thousands(report.border_samples) + ", " +
+                                                     with_thousands(report.open_samples) + " of them open"));
     }
     if (report.tiles > 0) {
         const std::string side = std::to_string(report.side);
@@ -201,7 +210,8 @@ int run_encode(const EncodeCommand& command) {
     if (const auto failure = check_names(command)) return report_error(*failure);
 
     const std::string input_name = shown_name(command.input, Direction::kRead);
-    Result<Input> input = read_input(command.input, {Want::kShapeAndColors, command.max_memory, command.format, true});
+    Result<Input> input =
+        read_input(command.input, {Want::kShapeAndColors, command.max_memory, command.format, true, command.raster});
     if (!input.ok()) return report_error(input_name, input.error());
     print_warnings(input_name, input.value().warnings);
 

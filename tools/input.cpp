@@ -90,6 +90,13 @@ Result<Input> read_input(const std::string& path, const ReadOptions& options) {
         input.bytes = std::move(bytes);
         return input;
     }
+    if (const auto image = raster_format_of(bytes, extension)) {
+        Result<RasterImage> raster = read_raster(bytes, *image, options.raster, memory);
+        if (!raster.ok()) return raster.error();
+        input.kind = Input::Kind::kRaster;
+        input.raster = std::move(raster.value());
+        return input;
+    }
     input.format =
         detect_format(format.empty() ? std::span<const uint8_t>(bytes) : std::span<const uint8_t>(), extension);
     if (extension == "gim" && input.format == MeshFormat::kUnknown) {
@@ -128,6 +135,8 @@ Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const
         }
         case Input::Kind::kRawImage:
             return to_mesh(input.raw);
+        case Input::Kind::kRaster:
+            return Error{Stage::kInput, "this is an image; encode it (gim encode IN OUT.gim) and take OUT.gim"};
         case Input::Kind::kMesh:
             break;
     }

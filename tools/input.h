@@ -7,6 +7,7 @@
 #include "gim/encoder.h"
 #include "tools/file.h"
 #include "tools/mesh_read.h"
+#include "tools/raster_file.h"
 
 namespace gim {
 
@@ -28,11 +29,12 @@ inline constexpr double kRawWeldTolerance = 2e-6;
 double diagonal_of(const RawImage& image);
 
 struct Input {
-    enum class Kind { kMesh, kGim, kRawImage };
+    enum class Kind { kMesh, kGim, kRawImage, kRaster };
     Kind kind = Kind::kMesh;
     MeshFormat format = MeshFormat::kUnknown;  // kMesh only
     TriangleMesh mesh;                         // kMesh only
     RawImage raw;                              // kRawImage only
+    RasterImage raster;                        // kRaster only
     Bytes bytes;                               // kGim only
     std::vector<std::string> warnings;         // what the mesh lost on its way in, one line each
 };
@@ -44,12 +46,13 @@ struct ReadOptions {
     uint64_t max_memory = default_max_memory();  // bytes that the file and the mesh in it may take
     std::string format = {};                     // an extension that tells the format; empty: the content does
     bool shading = false;                        // also read TriangleMesh::shading
+    RasterOptions raster = {};
 };
 
 // Reads the file and decides by options.format, else by content, then by extension. "-" is standard input.
 Result<Input> read_input(const std::string& path, const ReadOptions& options = {});
 
-// Returns any of the three as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
+// Returns any of them but an .npz or .exr image as a mesh for comparing and drawing. Decodes a .gim file at `level`. Welds the vertices of
 // formats that repeat them. options.format: taken if the name has no extension that gim knows. `warnings`: takes those
 // of the input; null: nobody wants them.
 Result<TriangleMesh> read_surface(const std::string& path, uint32_t level, const ReadOptions& options = {},

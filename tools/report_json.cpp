@@ -132,6 +132,8 @@ ordered_json to_json(const EncodeReport& report) {
             {"height", report.height},
             {"samples", report.samples},
             {"charts", report.charts},
+            {"border_samples", report.border_samples},
+            {"open_samples", report.open_samples},
             {"tiles", report.tiles},
             {"defined_samples", report.defined_samples},
             {"packing_efficiency", report.packing_efficiency},

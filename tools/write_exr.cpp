@@ -3,7 +3,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
@@ -14,29 +13,11 @@
 #include <exception>
 #include <string>
 
+#include "tools/exr_stream.h"
 #include "tools/surface_write.h"
 
 namespace gim {
 namespace {
-
-// OpenEXR writes to a stream and seeks back to fill in its offset table.
-class MemoryStream : public Imf::OStream {
-  public:
-    MemoryStream() : Imf::OStream("memory") {}
-    void write(const char c[], int n) override {
-        const auto count = static_cast<size_t>(n);
-        if (position_ + count > bytes.size()) bytes.resize(position_ + count);
-        std::copy(c, c + n, bytes.begin() + static_cast<std::ptrdiff_t>(position_));
-        position_ += count;
-    }
-    uint64_t tellp() override { return position_; }
-    void seekp(uint64_t position) override { position_ = position; }
-
-    Bytes bytes;
-
-  private:
-    uint64_t position_ = 0;
-};
 
 // The parts of one file must agree on the display window; the data windows may differ.
 Imath::Box2i window_of(uint32_t columns, uint32_t rows) {
@@ -71,7 +52,7 @@ std::vector<float> mask_of(const DecodedImage& image) {
     return mask;
 }
 
-void write_parts(MemoryStream& stream, std::span<const DecodedImage> images) {
+void write_parts(ExrStream& stream, std::span<const DecodedImage> images) {
     uint32_t columns = 0, rows = 0;
     for (const DecodedImage& image : images) {
         columns = std::max(columns, image.columns);
@@ -96,7 +77,7 @@ void write_parts(MemoryStream& stream, std::span<const DecodedImage> images) {
 
 Result<Bytes> write_triples_exr(uint32_t columns, uint32_t rows, const std::vector<float>& values,
                                 const std::array<const char*, 3>& channels) {
-    MemoryStream stream;
+    ExrStream stream;
     try {
         const Imath::Box2i window = window_of(columns, rows);
         Imf::Header header(window, window);
@@ -117,7 +98,7 @@ Result<Bytes> write_triples_exr(uint32_t columns, uint32_t rows, const std::vect
 }
 
 Result<Bytes> write_exr(std::span<const DecodedImage> images) {
-    MemoryStream stream;
+    ExrStream stream;
     try {
         if (images.size() == 1) {
             const std::vector<float> mask = mask_of(images[0]);

@@ -18,7 +18,6 @@ Status open_raster(const LevelRequest& request, OpenRaster* raster) {
 RasterWork lay_out_raster(const RasterShape& shape, Arena* arena) {
     RasterWork work;
     work.depth = arena->take<uint8_t>(shape.samples());
-    work.values = arena->take<int32_t>(shape.samples() * shape.channels);
     work.point = arena->take<uint32_t>(shape.samples());
     work.link = arena->take<uint32_t>(shape.samples());
     work.border = arena->take<uint32_t>(shape.samples());

@@ -19,7 +19,7 @@ struct OpenRaster {
 // request.level other than 0: kNoSuchLevel.
 Status open_raster(const LevelRequest& request, OpenRaster* raster);
 
-// The arrays of a decoder. The values have table.channels channels, or only the positions.
+// The arrays of a decoder but for the values.
 RasterWork lay_out_raster(const RasterShape& shape, Arena* arena);
 
 // Decodes the mask and shape.channels channels of each sample: all of the file, or the positions alone.

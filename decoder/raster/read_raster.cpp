@@ -30,6 +30,7 @@ struct Surface {
     }
     void lay_out(Arena* arena) {
         work = lay_out_raster(grid, arena);
+        work.values = arena->take<int32_t>(grid.samples() * grid.channels);
         ws.charts = arena->take<DecodedChart>(1);
         ws.depth = work.depth;
         ws.point = work.point;

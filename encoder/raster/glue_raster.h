@@ -10,10 +10,10 @@
 namespace gim {
 
 struct RasterGluing {
-    std::vector<uint8_t> depth;     // per sample: kOnBorder, kInside, kUndefined (format/chart_ramp.h)
-    std::vector<uint32_t> origin;   // per sample: the first sample of its point
-    std::vector<uint32_t> point;    // per sample: its point, numbered by first appearance
-    uint32_t points = 0, pieces = 0;  // pieces: of the mask, connected by sides or corners
+    std::vector<uint8_t> depth;                  // per sample: kOnBorder, kInside, kUndefined (format/chart_ramp.h)
+    std::vector<uint32_t> origin;                // per sample: the first sample of its point
+    std::vector<uint32_t> point;                 // per sample: its point, numbered by first appearance
+    uint32_t points = 0, pieces = 0;             // pieces: of the mask, connected by sides or corners
     uint64_t defined = 0, border = 0, open = 0;  // open: border samples that are alone
 };
 

@@ -79,7 +79,8 @@ Result<RasterScale> whole_scale(std::span<const Range> axes) {
         is_wide = is_wide || std::abs(axes[k].low) > kMostExactFloat || std::abs(axes[k].high) > kMostExactFloat;
     }
     if (bits > kMaxBits)
-        return error("the positions are whole numbers of more than 20 bits; make them floats, and they are rounded to --bits");
+        return error(
+            "the positions are whole numbers of more than 20 bits; make them floats, and they are rounded to --bits");
     if (is_wide) scale.wide_origin = scale.low;
     scale.units.bits = bits;
     scale.units.step = 1;

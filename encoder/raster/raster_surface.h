@@ -15,6 +15,7 @@ std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t widt
                                        std::span<const float> units);
 
 // The surface through the first sample of each point. positions: one per sample.
-Mesh raster_surface(const RasterGluing& gluing, std::span<const Triangle> triangles, const std::vector<Vec3>& positions);
+Mesh raster_surface(const RasterGluing& gluing, std::span<const Triangle> triangles,
+                    const std::vector<Vec3>& positions);
 
 }  // namespace gim

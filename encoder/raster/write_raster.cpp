@@ -23,8 +23,7 @@ void join_points(const RasterGluing& gluing, uint32_t channels, std::vector<int3
 std::vector<float> units_of(const RasterImage& image, const std::vector<int32_t>& values, float unit) {
     std::vector<float> units(image.defined.size() * 3);
     for (size_t i = 0; i < image.defined.size(); ++i) {
-        for (size_t k = 0; k < 3; ++k)
-            units[i * 3 + k] = unit * static_cast<float>(values[i * image.channels + k]);
+        for (size_t k = 0; k < 3; ++k) units[i * 3 + k] = unit * static_cast<float>(values[i * image.channels + k]);
     }
     return units;
 }
@@ -41,7 +40,8 @@ std::vector<uint8_t> code_samples(const RasterImage& image, const RasterTable& t
                                     {depth.data(), values.data(), point.data(), link.data(), border.data(),
                                      errors.data(), magnitudes.data(), gluing.origin.data()});
     coder.code_mask();
-    for (uint32_t first = 0; first < shape.channels; first += kRasterGroup) (void)coder.code_group(table.group(first, bits));
+    for (uint32_t first = 0; first < shape.channels; first += kRasterGroup)
+        (void)coder.code_group(table.group(first, bits));
     return encoder.finish();
 }
 
@@ -76,8 +76,8 @@ std::vector<uint8_t> write_raster(const RasterImage& image, const RasterScale& s
             .size());
     table.sample_type = static_cast<uint32_t>(image.type);
     table.is_channels_first = image.is_channels_first;
-    table.mask = static_cast<uint32_t>(image.mask) +
-                 (image.mask == RasterImage::Mask::kChannel ? image.mask_channel : 0);
+    table.mask =
+        static_cast<uint32_t>(image.mask) + (image.mask == RasterImage::Mask::kChannel ? image.mask_channel : 0);
     table.mask_value = image.mask_value;
     table.channels = image.channels;
     const std::vector<uint8_t> seams = serialize_raster_table(table, scale.others);

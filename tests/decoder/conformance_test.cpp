@@ -39,6 +39,7 @@ TEST(Conformance, ValidFilesDecodeToTheExpectedBits) {
         EXPECT_EQ(to_bytes(decoded.details), read_bytes(fs::path(path).replace_extension(".dsp")));
         EXPECT_EQ(to_bytes(decoded.bounds), read_bytes(fs::path(path).replace_extension(".bnd")));
         EXPECT_EQ(decoded.labels, read_bytes(fs::path(path).replace_extension(".lbl")));
+        EXPECT_EQ(to_bytes(decoded.raster), read_bytes(fs::path(path).replace_extension(".ras")));
     }
 }
 

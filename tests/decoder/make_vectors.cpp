@@ -13,17 +13,20 @@
 #include "encoder/code/measure_boxes.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/planes/labels.h"
+#include "encoder/raster/write_raster.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/tiles/tile_plane.h"
 #include "encoder/tiles/write_tiles.h"
 #include "format/checksum.h"
 #include "format/plane_code.h"
+#include "format/raster_table.h"
 #include "format/seam.h"
 #include "format/sideband_code.h"
 #include "format/tile_atlas.h"
 #include "gim/cut.h"
 #include "tests/decoder/vectors.h"
 #include "tests/encoder/charts/made_charts.h"
+#include "tests/encoder/raster/made_rasters.h"
 #include "tests/encoder/tiles/made_tiles.h"
 #include "tests/format/random_sideband.h"
 #include "tests/format/raw_chart_table.h"
@@ -307,6 +310,7 @@ class Writer {
         if (!decoded.planes.empty()) write_bytes(folder_ / "valid" / (name + ".pln"), to_bytes(decoded.planes));
         if (!decoded.details.empty()) write_bytes(folder_ / "valid" / (name + ".dsp"), to_bytes(decoded.details));
         if (!decoded.labels.empty()) write_bytes(folder_ / "valid" / (name + ".lbl"), decoded.labels);
+        if (!decoded.raster.empty()) write_bytes(folder_ / "valid" / (name + ".ras"), to_bytes(decoded.raster));
         if (!decoded.bounds.empty()) write_bytes(folder_ / "valid" / (name + ".bnd"), to_bytes(decoded.bounds));
     }
     void invalid(const std::string& name, const Bytes& file) {
@@ -949,6 +953,91 @@ void write_invalid_payloads(Writer& out, const Bytes& plain, const Bytes& sphere
     }());
 }
 
+// ---- rasters --------------------------------------------------------------------------------------------------------
+
+Bytes encode_raster_as(const RasterImage& image, double tolerance, double quantizer) {
+    auto scale = scale_raster(image, 12);
+    if (!scale.ok()) std::abort();
+    return write_raster(image, scale.value(), glue_raster(image, raster_positions(image), tolerance), quantizer);
+}
+
+void write_valid_rasters(Writer& out) {
+    out.valid("raster-full", encode_raster_as(raster_of(9, 7, all_defined, 3), 0, 0));
+    out.valid("raster-holes", encode_raster_as(raster_of(19, 17, with_holes, 3), 0, 0));
+    out.valid("raster-seams", encode_raster_as(folded_raster(24, 10, 0), 0, 0));
+    out.valid("raster-seams-lossy", encode_raster_as(folded_raster(24, 10, 0), 0, 5.5));
+    out.valid("raster-seams-inexact", encode_raster_as(folded_raster(24, 10, 2), 6, 0));
+    RasterImage other = raster_of(12, 11, with_holes, 7);
+    other.is_channels_first = true;
+    other.mask = RasterImage::Mask::kChannel;
+    other.mask_channel = 5;
+    other.mask_value = 255;
+    out.valid("raster-channels", encode_raster_as(other, 0, 0));
+    RasterImage noise = raster_of(16, 16, with_holes, 4);
+    Random random(5);
+    for (double& v : noise.values) v = random.below(1u << 20);
+    noise.type = SampleType::kInt32;
+    out.valid("raster-noise-20-bits", encode_raster_as(noise, 0, 0));
+    out.valid("raster-wide-origin", far_away(encode_raster_as(folded_raster(24, 10, 0), 0, 0)));
+}
+
+void write_invalid_rasters(Writer& out) {
+    const RasterImage image = raster_of(8, 6, with_holes, 5);
+    const Bytes file = encode_raster_as(image, 0, 0), lossy_file = encode_raster_as(image, 0, 4);
+    const auto header = [&](const char* name, const std::function<void(Header&)>& change) {
+        out.invalid(name, with_parts(name[0] == 'm' ? lossy_file : file, [&](Parts& p) { change(p.header); }));
+    };
+    out.invalid("malformed.raster-levels-2", with_parts(file, [](Parts& p) {
+                    p.header.level_count = 2;
+                    insert_chunk(&p, 1, 1, false, {});
+                }));
+    header("malformed.raster-width-1", [](Header& h) { h.width = 1; });
+    header("malformed.raster-too-many-samples", [](Header& h) { h.width = h.height = 65536; });
+    header("malformed.raster-tangential", [](Header& h) { h.tangential = 8; });
+    header("limit-exceeded.raster-side", [](Header& h) { h.width = 16386; });
+    for (const auto& [name, type] : {std::pair("malformed.raster-labels", 6), std::pair("malformed.raster-normals", 3)})
+        out.invalid(name,
+                    with_parts(file, [&](Parts& p) { insert_chunk(&p, 2, static_cast<uint32_t>(type), true, {0}); }));
+
+    const auto table = [&](const char* name,
+                           const std::function<void(RasterTable&, std::vector<RasterChannel>&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) {
+                        RasterTable t;
+                        if (parse_raster_table(p.payloads[0], p.header, {}, &t) != Status::kOk) std::abort();
+                        std::vector<RasterChannel> others = {t.channel(3), t.channel(4)};
+                        change(t, others);
+                        p.payloads[0] = serialize_raster_table(t, others);
+                    }));
+    };
+    using Others = std::vector<RasterChannel>;
+    table("malformed.raster-vertices-2", [](RasterTable& t, Others&) { t.vertices = 2; });
+    table("malformed.raster-vertices-more-than-samples", [](RasterTable& t, Others&) { t.vertices = 49; });
+    table("malformed.raster-vertices-wrong", [](RasterTable& t, Others&) { --t.vertices; });
+    table("malformed.raster-triangles-0", [](RasterTable& t, Others&) { t.triangles = 0; });
+    table("malformed.raster-triangles-more-than-cells", [](RasterTable& t, Others&) { t.triangles = 97; });
+    table("malformed.raster-triangles-wrong", [](RasterTable& t, Others&) { ++t.triangles; });
+    table("unsupported-version.raster-type-9", [](RasterTable& t, Others&) { t.sample_type = 9; });
+    table("unsupported-version.raster-type-bit-5", [](RasterTable& t, Others&) { t.sample_type |= 0x20; });
+    table("malformed.raster-mask-too-far", [](RasterTable& t, Others&) { t.mask = 8; });
+    table("malformed.raster-channels-2", [](RasterTable& t, Others& o) { t.channels = 2, o.clear(); });
+    table("malformed.raster-channels-4097", [](RasterTable& t, Others& o) { t.channels = 4097, o.resize(4094, o[0]); });
+    table("malformed.raster-channel-missing", [](RasterTable&, Others& o) { o.pop_back(); });
+    table("malformed.raster-channel-left-over", [](RasterTable&, Others& o) { o.push_back(o[0]); });
+    table("malformed.raster-channel-bits-0", [](RasterTable&, Others& o) { o[1].bits = 0; });
+    table("malformed.raster-channel-bits-21", [](RasterTable&, Others& o) { o[1].bits = 21; });
+    table("malformed.raster-channel-origin", [](RasterTable&, Others& o) { o[0].origin = 0x1p101f; });
+    table("malformed.raster-channel-step", [](RasterTable&, Others& o) { o[0].step = 0; });
+    table("malformed.raster-channel-too-small", [](RasterTable&, Others& o) { o[1].bits = 1; });
+    out.invalid("limit-exceeded.raster-channels",
+                with_parts(file, [](Parts& p) { p.header.width = p.header.height = 8192; }));
+    const auto stream = [&](const char* name, const std::function<void(Bytes&)>& change) {
+        out.invalid(name, with_parts(file, [&](Parts& p) { change(p.payloads[1]); }));
+    };
+    stream("malformed.raster-stream-empty", [](Bytes& b) { b.clear(); });
+    stream("malformed.raster-stream-of-ones", [](Bytes& b) { b.assign(64, 0xFF); });
+    stream("malformed.raster-stream-halved", [](Bytes& b) { b.resize(b.size() / 2); });
+}
+
 }  // namespace
 }  // namespace gim
 
@@ -966,6 +1055,7 @@ int main(int argc, char** argv) {
     write_valid_charts(out, kept);
     write_valid_tiles(out);
     write_valid_labels(out);
+    write_valid_rasters(out);
     const Bytes plain = encode({hill(5, open_square(), 0, 1)}, lossless(8, 5));
     const Bytes sphere = encode({hill(17, folded_sides(), 9, 2)}, lossless(12, 5));
     const Bytes torus_file = encode({hill(17, torus(), 40, 4)}, lossless(12, 3));
@@ -979,5 +1069,6 @@ int main(int argc, char** argv) {
     write_invalid_chart_planes(out);
     write_invalid_tiles(out);
     write_invalid_labels(out);
+    write_invalid_rasters(out);
     return out.fine() ? 0 : 1;
 }

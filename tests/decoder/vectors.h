@@ -15,7 +15,7 @@
 
 namespace gim::test {
 
-// All levels that can be closed of all images, in order, then the planes, then details, then labels. Stops at the first failure.
+// All levels that can be closed of all images, in order, then the planes, then details, then labels, then the raster. Stops at the first failure.
 struct Decoded {
     gim_status status = GIM_OK;
     std::vector<float> samples;       // of gim_decode_grid
@@ -25,6 +25,7 @@ struct Decoded {
     std::vector<float> details;       // of gim_open_detailed_domain
     std::vector<float> bounds;        // errors of levels (RMS, maximum), then boxes of images (low, high), if told
     std::vector<uint8_t> labels;      // of gim_decode_labels
+    std::vector<int32_t> raster;      // of gim_decode_raster: numbers, then the mask
     uint64_t prefix = 0;              // bytes of the file that all this needs
 };
 
@@ -138,6 +139,26 @@ inline gim_status decode_labels(const gim_info& info, const std::vector<uint8_t>
     return GIM_OK;
 }
 
+// The imported image, if the file holds one.
+inline gim_status decode_raster(const gim_info& info, const std::vector<uint8_t>& file, Decoded* out) {
+    gim_raster_info r{};
+    gim_status s = gim_read_raster_info(&info, file.data(), file.size(), &r);
+    if (s == GIM_NO_SUCH_PLANE) return GIM_OK;
+    if (s != GIM_OK) return s;
+    out->prefix = out->prefix > r.prefix_size ? out->prefix : r.prefix_size;
+    std::vector<int32_t> values(size_t{r.width} * r.height * r.channels);
+    std::vector<uint8_t> mask(size_t{r.width} * r.height);
+    Scratch scratch(r.scratch_size);
+    s = gim_decode_raster(&info, file.data(), file.size(), values.data(), mask.data(), scratch.data(), scratch.size());
+    for (uint32_t k = 0; s == GIM_OK && k < r.channels; ++k) {
+        gim_raster_channel channel;
+        s = gim_read_raster_channel(&info, file.data(), file.size(), k, &channel);
+    }
+    out->raster = values;
+    out->raster.insert(out->raster.end(), mask.begin(), mask.end());
+    return s;
+}
+
 // What the index tells of errors and boxes. Empty if it tells nothing.
 inline gim_status read_bounds(const gim_info& info, const std::vector<uint8_t>& file, Decoded* out) {
     if (info.level_max_error[0] == 0 && info.has_boxes == 0) return GIM_OK;
@@ -174,6 +195,7 @@ inline Decoded decode_all(const std::vector<uint8_t>& file) {
         out.status = decode_details(info, file, image, &out);
     for (uint32_t image = 0; out.status == GIM_OK && image < info.image_count; ++image)
         out.status = decode_labels(info, file, image, &out);
+    if (out.status == GIM_OK) out.status = decode_raster(info, file, &out);
     return out;
 }
 

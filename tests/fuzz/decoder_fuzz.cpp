@@ -192,6 +192,20 @@ void refine(const gim_info& info, const std::vector<uint8_t>& bytes, uint32_t im
     use_domain(domain, shape);
 }
 
+// Decodes the imported image, if the file holds one.
+void decode_raster(const gim_info& info, const std::vector<uint8_t>& bytes) {
+    gim_raster_info r;
+    if (gim_read_raster_info(&info, bytes.data(), bytes.size(), &r) != GIM_OK) return;
+    std::vector<int32_t> values(size_t{r.width} * r.height * r.channels);
+    std::vector<uint8_t> mask(size_t{r.width} * r.height);
+    gim::Scratch scratch(r.scratch_size);
+    (void)gim_decode_raster(&info, bytes.data(), bytes.size(), values.data(), mask.data(), scratch.data(),
+                            scratch.size());
+    gim_raster_channel channel;
+    for (uint32_t k = 0; gim_read_raster_channel(&info, bytes.data(), bytes.size(), k, &channel) == GIM_OK; ++k) {
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -206,6 +220,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (uint32_t image = 0; image < info.image_count; ++image)
         for (uint32_t level = 0; level < info.level_count; ++level) decode_labels(info, bytes, image, level);
     for (uint32_t image = 0; image < info.image_count; ++image) refine(info, bytes, image);
+    decode_raster(info, bytes);
     uint32_t paths = 0;
     for (uint32_t level = 0; level < info.level_count; ++level)
         (void)gim_read_seams(&info, bytes.data(), bytes.size(), 0, level, nullptr, &paths);

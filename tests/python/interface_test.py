@@ -33,7 +33,8 @@ class Interface(unittest.TestCase):
     def test_structs(self):
         for name, struct in (("gim_limits", gim._Limits), ("gim_box", gim._Box), ("gim_info", gim._Info),
                              ("gim_view", gim._View), ("gim_level_info", gim._LevelInfo),
-                             ("gim_plane_info", gim._PlaneInfo)):
+                             ("gim_plane_info", gim._PlaneInfo), ("gim_raster_info", gim._RasterInfo),
+                             ("gim_raster_channel", gim._RasterChannel)):
             with self.subTest(name):
                 self.assertEqual(struct._fields_, fields_of(name))
 
@@ -49,7 +50,7 @@ class Interface(unittest.TestCase):
         named = constants()
         self.assertEqual((named["GIM_MAX_LEVELS"], named["GIM_NO_LEVEL"]), (gim._MAX_LEVELS, gim._NO_LEVEL))
         for prefix, names in (("GIM_LAYOUT_", gim._LAYOUTS), ("GIM_CODING_", gim._CODINGS),
-                              ("GIM_PLANE_", gim._PLANES)):
+                              ("GIM_PLANE_", gim._PLANES), ("GIM_SAMPLE_", gim._SAMPLE_TYPES)):
             of_header = {name[len(prefix):].lower(): value for name, value in named.items() if name.startswith(prefix)}
             self.assertEqual(of_header, {name: number for number, name in enumerate(names)})
 

@@ -5,6 +5,8 @@
     mesh = surface.mesh(2, normals=True)          # a closed triangle mesh, each side a quarter of the samples
     batch = gim.decode_batch(files, level=1, layout="CHW", threads=4)
     data = gim.encode(vertices, faces, psnr=70)   # bytes of a new file
+    data = gim.encode_image(array, mask, lossless=True)   # of a multi-chart image that another program made
+    array, mask = gim.open(data).array()          # and that image again
 
 This is the C library of gim/decoder.h through ctypes. The C functions write straight into the arrays that are returned,
 and read straight from the bytes that are given. Level 0 is full resolution; each further level halves it. Decoded
@@ -19,6 +21,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import io
 import operator
 import os
 import re
@@ -31,7 +34,7 @@ from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 
-__all__ = ["open", "decode_batch", "encode", "File", "Image", "Box", "Info", "Level", "Plane", "Mesh", "Grid", "Frames",
+__all__ = ["open", "decode_batch", "encode", "encode_image", "File", "Image", "Box", "Info", "Level", "Plane", "Mesh", "Grid", "Frames",
            "Limits", "Error", "STATUS_NAMES"]
 
 # ---- the C interface -------------------------------------------------------------------------------------------------
@@ -87,6 +90,20 @@ class _LabelsInfo(ctypes.Structure):  # gim_labels_info
     _fields_ = [("cell_count", _u32), ("scratch_size", _u64), ("prefix_size", _u64)]
 
 
+class _RasterInfo(ctypes.Structure):  # gim_raster_info
+    _fields_ = [("width", _u32), ("height", _u32), ("channels", _u32), ("sample_type", _u32),
+                ("is_channels_first", _u32), ("mask", _u32), ("mask_value", _u32), ("prefix_size", _u64),
+                ("scratch_size", _u64)]
+
+
+class _RasterChannel(ctypes.Structure):  # gim_raster_channel
+    _fields_ = [("bits", _u32), ("origin", _f64), ("step", _f64)]
+
+
+# In the order of GIM_SAMPLE_...
+_SAMPLE_TYPES = ("float32", "float64", "float16", "uint8", "int8", "uint16", "int16", "uint32", "int32")
+
+
 def _load_library():
     name = os.environ.get("GIM_LIBRARY") or "libgim-decoder.so.0"
     try:
@@ -109,6 +126,9 @@ def _load_library():
         "gim_decode_plane": file + [_u32, _u32, _u32, pointer] + scratch,
         "gim_read_labels_info": file + [_u32, _u32, pointer],
         "gim_decode_labels": file + [_u32, _u32, pointer] + scratch,
+        "gim_read_raster_info": file + [pointer],
+        "gim_read_raster_channel": file + [_u32, pointer],
+        "gim_decode_raster": file + [pointer, pointer] + scratch,
         "gim_read_text": file + [pointer, size, pointer] + scratch,
     }
     for function, types in arguments.items():
@@ -539,6 +559,37 @@ class File:
         """As Image.plane, of the only image."""
         return self._only().plane(name, level, out)
 
+    def array(self):
+        """The image that gim.encode_image or `gim encode` imported: the array with its shape and type, and its mask as
+        bool, height x width. A mask that was a channel is in the array too. Undefined samples are NaN if they were, else 0.
+        Whole numbers are exact if the file is lossless. Raises gim.Error with gim.NO_SUCH_PLANE for other files."""
+        read, budget = _RasterInfo(), _Budget(self._limits)
+        _check(_lib.gim_read_raster_info(*self._arguments, ctypes.addressof(read)))
+        numbers = budget.array((read.height, read.width, read.channels), np.int32)
+        mask, scratch = budget.array((read.height, read.width), np.uint8), _Scratch(budget)
+        scratch.reserve(read.scratch_size)
+        _check(_lib.gim_decode_raster(*self._arguments, _address(numbers), _address(mask), scratch.address,
+                                      scratch.size))
+        mask, kind = mask.astype(bool), np.dtype(_SAMPLE_TYPES[read.sample_type])
+        values = np.where(mask[..., None], self._raster_values(numbers, budget), 0)
+        if kind.kind != "f":
+            values = np.clip(np.rint(values), np.iinfo(kind).min, np.iinfo(kind).max)
+        elif read.mask == 0:
+            values[~mask] = np.nan
+        values = values.astype(kind)
+        if read.mask >= 2:
+            of_mask = np.where(mask, read.mask_value, 0).astype(kind)
+            values = np.insert(values, read.mask - 2, of_mask, axis=2)
+        return (values.transpose(2, 0, 1) if read.is_channels_first else values), mask
+
+    def _raster_values(self, numbers, budget):
+        values = budget.array(numbers.shape, np.float64)
+        for k in range(numbers.shape[2]):
+            channel = _RasterChannel()
+            _check(_lib.gim_read_raster_channel(*self._arguments, k, ctypes.addressof(channel)))
+            values[..., k] = channel.origin + channel.step * numbers[..., k]
+        return values
+
     @property
     def text(self):
         """The text that the file carries about itself; "" if none."""
@@ -770,15 +821,36 @@ def encode(vertices, faces, *, vertex_normals=None, vertex_colors=None, program=
 
     The mesh goes to the program through a pipe; no file is written. What the program warns of comes as UserWarning. If
     it fails, gim.Error has its message and its exit_status."""
-    command = [_find_program(program), "encode", "-", "-", "--format=ply", "--quiet"]
+    return _run_encode("ply", _ply(vertices, faces, vertex_normals, vertex_colors), program, timeout, options)
+
+
+def encode_image(array, mask=None, *, program=None, timeout=None, **options):
+    """Encodes a multi-chart image that another program made, sample by sample: the bytes of a .gim file.
+
+    array    height x width x channels, or channels first: x, y, z, then perhaps a mask, and others; float16, float32,
+             float64, and whole numbers of 8, 16 and 32 bits
+    mask     height x width; not 0 where a sample is defined. None: where the array is NaN, a sample is undefined; without
+             NaN, channel 3 is the mask if there is one
+    options  those of `gim encode --help` that images have, as for gim.encode: lossless=True, bits=16, psnr=70, bytes=4000,
+             mask_channel=4 or "none", channels="first"
+
+    File.array gives the image back. The rest is as in gim.encode."""
+    arrays, file = {"image": np.asarray(array)}, io.BytesIO()
+    if mask is not None:
+        arrays["mask"] = np.asarray(mask)
+    np.savez(file, **arrays)
+    return _run_encode("npz", file.getvalue(), program, timeout, options)
+
+
+def _run_encode(kind, data, program, timeout, options):
+    command = [_find_program(program), "encode", "-", "-", "--format=" + kind, "--quiet"]
     command += [word for name, value in options.items() for word in _option(name, value)]
-    run = subprocess.run(command, input=_ply(vertices, faces, vertex_normals, vertex_colors), stdout=subprocess.PIPE,
-                         stderr=subprocess.PIPE, timeout=timeout, check=False)
+    run = subprocess.run(command, input=data, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=timeout, check=False)
     message = run.stderr.decode("utf-8", "replace").strip()
     if run.returncode != 0:
         raise Error(None, message or f"gim encode ended with status {run.returncode}", exit_status=run.returncode)
     if message:
-        warnings.warn(message, stacklevel=2)
+        warnings.warn(message, stacklevel=3)
     return run.stdout
 
 

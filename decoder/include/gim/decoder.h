@@ -19,7 +19,8 @@
  *                     surface; side = 2^j + 1, and level L has side 2^(j-L) + 1. Images of one file may differ in side.
  *                     A level of the file leaves out the images that are too small for it.
  *   GIM_LAYOUT_MCGIM  One image. Charts are packed into its rectangle; samples outside them are undefined. Level L
- *                     keeps every 2^L-th row and column of each chart.
+ *                     keeps every 2^L-th row and column of each chart. Or it is the image of another program
+ *                     (gim_read_raster_info): then there is level 0 only.
  *   GIM_LAYOUT_TILES  One image. Square tiles of side x side samples, side = 2^k + 1, are glued along their sides. In the
  *                     image they lie in slots of a rectangle, tile after tile; samples of slots without a tile are
  *                     undefined. Level L has tiles of side 2^(k-L) + 1.

@@ -384,16 +384,16 @@ struct RasterImage {
     enum class Mask : uint32_t { kNowhere, kArray, kChannel };
 
     uint32_t width = 0, height = 0;
-    uint32_t channels = 3;                  // x, y, z, then others. The mask is none of them
-    std::vector<double> values;             // width * height * channels, sample by sample, row by row
-    std::vector<uint8_t> defined;           // per sample; not 0: it is defined
+    uint32_t channels = 3;         // x, y, z, then others. The mask is none of them
+    std::vector<double> values;    // width * height * channels, sample by sample, row by row
+    std::vector<uint8_t> defined;  // per sample; not 0: it is defined
     SampleType type = SampleType::kFloat32;
     // How the array looked. The file keeps it, so that a decoder can make the same array again.
     bool is_channels_first = false;
     Mask mask = Mask::kNowhere;
-    uint32_t mask_channel = 3;              // kChannel: its place among the channels of the array
-    uint32_t mask_value = 1;                // what the mask says of defined samples; it says 0 of others
-    std::vector<std::string> names = {};    // of the channels; empty: nobody named them
+    uint32_t mask_channel = 3;            // kChannel: its place among the channels of the array
+    uint32_t mask_value = 1;              // what the mask says of defined samples; it says 0 of others
+    std::vector<std::string> names = {};  // of the channels; empty: nobody named them
 };
 
 // Encodes such an image as it is: no sample moves to another place. Whole numbers of up to 20 bits are exact with

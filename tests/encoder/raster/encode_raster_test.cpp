@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "gim/decoder.hpp"
+#include "tests/encoder/raster/made_rasters.h"
+
+namespace gim {
+namespace {
+
+using namespace gim::test;
+
+EncodeOptions options_of(RateTarget rate) {
+    EncodeOptions options;
+    options.rate = rate;
+    options.threads = 1;
+    return options;
+}
+const EncodeOptions kExact = options_of({RateTarget::Kind::kLossless, 0});
+
+Encoded encoded(const RasterImage& image, const EncodeOptions& options = kExact) {
+    Result<Encoded> file = encode_raster(image, options);
+    EXPECT_TRUE(file.ok()) << file.error().message;
+    return file.ok() ? std::move(file.value()) : Encoded{};
+}
+
+std::string failure(const RasterImage& image, const EncodeOptions& options = kExact) {
+    const Result<Encoded> file = encode_raster(image, options);
+    return file.ok() ? "" : file.error().message;
+}
+
+struct Back {
+    std::vector<double> values;
+    std::vector<uint8_t> defined;
+};
+
+Back decoded(const std::vector<uint8_t>& file) {
+    Decoder decoder;
+    gim_raster_info info;
+    EXPECT_EQ(decoder.open(file), GIM_OK);
+    EXPECT_EQ(gim_read_raster_info(&decoder.info(), file.data(), file.size(), &info), GIM_OK);
+    Back back;
+    back.defined.resize(size_t{info.width} * info.height);
+    std::vector<int32_t> numbers(back.defined.size() * info.channels);
+    Scratch scratch(info.scratch_size);
+    EXPECT_EQ(gim_decode_raster(&decoder.info(), file.data(), file.size(), numbers.data(), back.defined.data(),
+                                scratch.data(), scratch.size()),
+              GIM_OK);
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        gim_raster_channel c;
+        EXPECT_EQ(gim_read_raster_channel(&decoder.info(), file.data(), file.size(),
+                                          static_cast<uint32_t>(i % info.channels), &c),
+                  GIM_OK);
+        back.values.push_back(back.defined[i / info.channels] ? c.origin + c.step * numbers[i] : 0);
+    }
+    return back;
+}
+
+void expect_exact(const RasterImage& image, const EncodeOptions& options = kExact) {
+    const Back back = decoded(encoded(image, options).bytes);
+    EXPECT_EQ(back.defined, image.defined);
+    EXPECT_EQ(back.values, image.values);
+}
+
+TopologySummary topology_of(const std::vector<uint8_t>& file) {
+    Decoder decoder;
+    DecoderLevel level;
+    EXPECT_EQ(decoder.open(file), GIM_OK);
+    EXPECT_EQ(decoder.read_level(0, 0, &level), GIM_OK);
+    std::vector<float> positions(size_t{level.vertex_count} * 3);
+    std::vector<uint32_t> triangles(size_t{level.triangle_count} * 3);
+    EXPECT_EQ(decoder.mesh(level, {positions, {}, {}, triangles}), GIM_OK);
+    TriangleMesh mesh;
+    for (size_t v = 0; v < positions.size(); v += 3)
+        mesh.positions.push_back({positions[v], positions[v + 1], positions[v + 2]});
+    for (size_t t = 0; t < triangles.size(); t += 3)
+        mesh.triangles.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
+    return summarize_topology(mesh);
+}
+
+TEST(EncodeRaster, WholeNumbersAreExactUnderEveryMask) {
+    const MaskRule masks[] = {all_defined,
+                              with_holes,
+                              [](uint32_t r, uint32_t c) { return (r + c) % 7 < 4; },
+                              [](uint32_t r, uint32_t c) { return r * r + c * c < 200; },
+                              [](uint32_t r, uint32_t c) { return r < 2 && c < 2 && r + c < 2; },
+                              [](uint32_t r, uint32_t c) { return r > 1 && c > 20; }};
+    for (const MaskRule mask : masks) {
+        SCOPED_TRACE(&mask - masks);
+        expect_exact(raster_of(31, 23, mask, 3));
+    }
+    expect_exact(raster_of(2, 40, all_defined, 3));
+    expect_exact(raster_of(40, 2, all_defined, 3));
+}
+
+TEST(EncodeRaster, OtherChannelsAreExactToo) {
+    for (const uint32_t channels : {4u, 5u, 6u, 10u}) expect_exact(raster_of(20, 15, with_holes, channels));
+    RasterImage image = raster_of(20, 15, with_holes, 4);
+    for (size_t i = 3; i < image.values.size(); i += 4) image.values[i] = image.defined[i / 4] ? 7 : 0;
+    expect_exact(image);
+    const Encoded lossy = encoded(image, options_of({RateTarget::Kind::kQuality, 40}));
+    const Back back = decoded(lossy.bytes);
+    for (size_t i = 3; i < image.values.size(); i += 4) EXPECT_EQ(back.values[i], image.values[i]);
+}
+
+TEST(EncodeRaster, NegativeAndLargeNumbersAreExact) {
+    RasterImage image = raster_of(20, 15, with_holes, 3);
+    image.type = SampleType::kInt32;
+    for (size_t i = 0; i < image.values.size(); ++i)
+        if (image.defined[i / 3]) image.values[i] = image.values[i] * 200 - 2e9;
+    expect_exact(image);
+    for (double& v : image.values) v *= 8;
+    EXPECT_NE(failure(image).find("more than 20 bits"), std::string::npos);
+}
+
+TEST(EncodeRaster, FloatsAreRoundedToTheBits) {
+    RasterImage image = raster_of(30, 20, with_holes, 5);
+    image.type = SampleType::kFloat32;
+    for (double& v : image.values) v = std::sin(v * 0.001);
+    for (const uint32_t bits : {10u, 16u, 20u}) {
+        EncodeOptions options = kExact;
+        options.bits = bits;
+        const Encoded file = encoded(image, options);
+        const Back back = decoded(file.bytes);
+        const double half = 1.001 * 2 / (std::exp2(bits) - 1) / 2;
+        for (size_t i = 0; i < image.values.size(); ++i) {
+            if (image.defined[i / 5]) EXPECT_NEAR(back.values[i], image.values[i], half + 1e-6);
+        }
+        EXPECT_EQ(encoded(image, options).bytes, file.bytes);
+    }
+}
+
+TEST(EncodeRaster, BordersThatCoincideAreGlued) {
+    const RasterImage image = folded_raster(24, 10, 0);
+    const Encoded file = encoded(image);
+    const TopologySummary topology = topology_of(file.bytes);
+    EXPECT_TRUE(topology.manifold);
+    EXPECT_EQ(topology.boundary_loops, 2u);  // the ends of the tube
+    EXPECT_EQ(topology.components, 1u);
+    EXPECT_EQ(file.report.charts, 2u);
+    EXPECT_EQ(file.report.border_samples, 4u * 24 + 4 * 8);
+    EXPECT_EQ(file.report.open_samples, 4u * 8);
+    // Both sides stay together if the positions get coarser.
+    const TopologySummary coarse = topology_of(encoded(image, options_of({RateTarget::Kind::kQuality, 60})).bytes);
+    EXPECT_EQ(coarse.boundary_loops, 2u);
+    EXPECT_TRUE(coarse.manifold);
+}
+
+TEST(EncodeRaster, BordersWithinTheToleranceAreGluedAndStayExact) {
+    const RasterImage image = folded_raster(24, 10, 2);
+    EXPECT_EQ(encoded(image).report.open_samples, 4u * 8 + 4 * 12);
+    EncodeOptions options = kExact;
+    options.weld_tolerance = Length{2.5, false};
+    const Encoded file = encoded(image, options);
+    EXPECT_EQ(file.report.open_samples, 4u * 8);
+    EXPECT_EQ(topology_of(file.bytes).boundary_loops, 2u);
+    expect_exact(image, options);
+}
+
+TEST(EncodeRaster, GluedBordersAreNearlyFree) {
+    const size_t glued = encoded(folded_raster(60, 6, 0)).bytes.size();
+    RasterImage apart = folded_raster(60, 6, 0);
+    for (size_t i = 0; i < apart.values.size(); i += 3)
+        if (i / 3 >= 60 * 7) apart.values[i] += 3000;
+    EXPECT_LT(glued + 60, encoded(apart).bytes.size());
+}
+
+TEST(EncodeRaster, TargetsAreMet) {
+    RasterImage image = folded_raster(60, 30, 0);
+    image.type = SampleType::kFloat32;
+    for (double& v : image.values) v = v / 7 + 0.01;
+    size_t last = 0;
+    for (const double psnr : {45.0, 55.0, 65.0}) {
+        const Encoded file = encoded(image, options_of({RateTarget::Kind::kPsnr, psnr}));
+        EXPECT_GE(file.report.error.psnr, psnr);
+        EXPECT_LT(file.report.error.psnr, psnr + 3);
+        EXPECT_GT(file.bytes.size(), last);
+        last = file.bytes.size();
+    }
+    const Encoded near = encoded(image, options_of({RateTarget::Kind::kMaxError, 0.01, true}));
+    EXPECT_LE(near.report.error.hausdorff, 0.01 * near.report.error.diagonal);
+    for (const double bytes : {500.0, 900.0, 1500.0}) {
+        const size_t size = encoded(image, options_of({RateTarget::Kind::kBytes, bytes})).bytes.size();
+        EXPECT_LE(double(size), bytes);
+        EXPECT_GT(double(size), 0.8 * bytes);
+    }
+    EXPECT_NE(failure(image, options_of({RateTarget::Kind::kBytes, 60})).find("the smallest file"), std::string::npos);
+    EXPECT_NE(failure(image, options_of({RateTarget::Kind::kPsnr, 190})).find("--bits"), std::string::npos);
+}
+
+TEST(EncodeRaster, WhatIsNoImageOfASurfaceIsRefused) {
+    RasterImage image = raster_of(10, 10, all_defined, 3);
+    image.defined.assign(100, 0);
+    EXPECT_NE(failure(image).find("defines no sample"), std::string::npos);
+    for (const size_t i : {5u, 17u, 38u}) image.defined[i] = 1;
+    EXPECT_NE(failure(image).find("no surface"), std::string::npos);
+    image = raster_of(10, 10, all_defined, 3);
+    image.values[3 * 42 + 1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(failure(image).find("row 4, column 2"), std::string::npos);
+    image.defined[42] = 0;
+    EXPECT_EQ(failure(image), "");
+    image.values.pop_back();
+    EXPECT_NE(failure(image).find("not as many values"), std::string::npos);
+    EXPECT_NE(failure(raster_of(10, 10, all_defined, 2)).find("3 to 4096 channels"), std::string::npos);
+}
+
+TEST(EncodeRaster, TheFixedCostIsSmall) {
+    const Encoded file = encoded(raster_of(64, 64, with_holes, 3));
+    Decoder decoder;
+    ASSERT_EQ(decoder.open(file.bytes), GIM_OK);
+    EXPECT_LE(decoder.info().index_size + file.report.sideband_bytes, 60u);
+}
+
+}  // namespace
+}  // namespace gim
