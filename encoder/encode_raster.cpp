@@ -1,8 +1,7 @@
 // The driver from an image of another program to a .gim file.
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -38,28 +37,23 @@ class RasterRun {
           options_(options),
           positions_(raster_positions(image)),
           gluing_(glue_raster(image, positions_, tolerance())),
-          reference_(surface(), options.threads) {}
+          reference_(reference_of(surface(), options.threads)) {}
 
-    bool has_triangles() const { return !reference_.mesh().triangles.empty(); }
-    const ReferenceSurface& reference() const { return reference_; }
+    // Call nothing else but gluing() if not.
+    bool has_triangles() const { return reference_.has_value(); }
+    const ReferenceSurface& reference() const { return *reference_; }
     const RasterGluing& gluing() const { return gluing_; }
 
+    // Never larger than the lossless file: on very smooth images rounding may cost more than it saves.
     Result<File> find_file() const {
-        const RateTarget rate = resolved_target(options_.rate, reference_.diagonal());
-        switch (rate.kind) {
-            case RateTarget::Kind::kLossless:
-                return write_raster(image_, scale_, gluing_, 0);
-            case RateTarget::Kind::kQuality:
-                return write_raster(image_, scale_, gluing_, std::max(first_quantizer(rate, scale_.units.bits), 1.0));
-            case RateTarget::Kind::kBytes:
-                return within_bytes(rate.value);
-            default:
-                return within_error(rate);
-        }
+        File exact = write_raster(image_, scale_, gluing_, 0);
+        if (options_.rate.kind == RateTarget::Kind::kLossless) return exact;
+        GIM_TRY(file, find_lossy_file(exact));
+        return exact.size() <= file.size() ? std::move(exact) : std::move(file);
     }
     // Samples of the comparisons that decide and that are reported.
     uint32_t samples() const {
-        const size_t wanted = kSamplesPerTriangle * reference_.mesh().triangles.size();
+        const size_t wanted = kSamplesPerTriangle * reference_->mesh().triangles.size();
         return static_cast<uint32_t>(std::clamp<size_t>(wanted, kFewestSamples, CompareOptions{}.samples));
     }
     Result<Comparison> compare(const File& file, uint32_t samples, bool defects) const {
@@ -67,10 +61,18 @@ class RasterRun {
         options.samples = samples;
         options.threads = options_.threads;
         options.defects = defects;
-        return compare_file(file, reference_, options);
+        return compare_file(file, *reference_, options);
     }
 
   private:
+    Result<File> find_lossy_file(const File& exact) const {
+        const RateTarget rate = resolved_target(options_.rate, reference_->diagonal());
+        if (rate.kind == RateTarget::Kind::kQuality)
+            return write_raster(image_, scale_, gluing_, std::max(first_quantizer(rate, scale_.units.bits), 1.0));
+        if (rate.kind == RateTarget::Kind::kBytes)
+            return double(exact.size()) <= rate.value ? exact : within_bytes(rate.value);
+        return within_error(rate, exact);
+    }
     double tolerance() const {
         if (!options_.weld_tolerance && is_whole(image_.type)) return 0;
         const Length length = options_.weld_tolerance.value_or(Length{kFloatTolerance, true});
@@ -82,6 +84,10 @@ class RasterRun {
             high = high.cwiseMax(positions_[i]);
         }
         return length.value * (high - low).norm();
+    }
+    static std::optional<ReferenceSurface> reference_of(Mesh surface, uint32_t threads) {
+        if (surface.triangles.empty()) return {};
+        return std::optional<ReferenceSurface>(std::in_place, std::move(surface), threads);
     }
     Mesh surface() const {
         std::vector<float> units;
@@ -116,11 +122,11 @@ class RasterRun {
                                        " bytes are too few: the smallest file of this image has " +
                                        std::to_string(file_at(last_step()).size())};
     }
-    Result<File> within_error(const RateTarget& rate) const {
+    Result<File> within_error(const RateTarget& rate, const File& exact) const {
         const auto misses = [&](const File& file, uint32_t samples) -> Result<bool> {
             GIM_TRY(c, compare(file, samples, false));
             return rate.kind == RateTarget::Kind::kPsnr ? c.psnr < rate.value
-                                                        : c.hausdorff > rate.value * reference_.diagonal();
+                                                        : c.hausdorff > rate.value * reference_->diagonal();
         };
         GIM_TRY(step, first_step([&](int k) {
                     return misses(file_at(k), std::min(samples(), RateSearchValues::kTrialSamples));
@@ -130,9 +136,8 @@ class RasterRun {
             GIM_TRY(is_missed, misses(file, samples()));
             if (!is_missed) return file;
         }
-        File finest = write_raster(image_, scale_, gluing_, 0);
-        GIM_TRY(is_missed, misses(finest, samples()));
-        if (!is_missed) return finest;
+        GIM_TRY(is_missed, misses(exact, samples()));
+        if (!is_missed) return exact;
         return Error{Stage::kCode, "out of reach with " + std::to_string(scale_.units.bits) +
                                        " bits per coordinate; take more --bits"};
     }
@@ -142,7 +147,7 @@ class RasterRun {
     const EncodeOptions& options_;
     std::vector<Vec3> positions_;
     RasterGluing gluing_;
-    ReferenceSurface reference_;
+    std::optional<ReferenceSurface> reference_;  // none without a triangle
 };
 
 void describe_surface(const RasterImage& image, const RasterRun& run, EncodeReport& report) {
@@ -165,8 +170,8 @@ void describe_surface(const RasterImage& image, const RasterRun& run, EncodeRepo
     mesh.triangles = surface.triangles;
     report.topology = summarize_topology(mesh);
     if (const uint64_t edges = report.topology.nonmanifold_edges; edges > 0)
-        report.warnings.push_back("glued where borders coincide, the surface has " + std::to_string(edges) +
-                                  " edges of more than two triangles");
+        report.warnings.push_back("glued where borders coincide, the surface has more than two triangles at " + std::to_string(edges) +
+                                  (edges == 1 ? " edge" : " edges"));
 }
 
 Result<Encoded> run_stages(const RasterImage& image, const EncodeOptions& options, const Progress& progress) {

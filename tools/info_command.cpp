@@ -10,6 +10,7 @@
 #include "tools/commands.h"
 #include "tools/decoded.h"
 #include "tools/file.h"
+#include "tools/raster_file.h"
 #include "tools/report_json.h"
 
 namespace gim {
@@ -30,6 +31,8 @@ struct Description {
     uint64_t actual_size = 0;
     std::vector<Image> images;
     std::vector<gim_chunk> chunks;
+    std::string imported;               // the type of the array if the file holds an image of another program
+    uint32_t channels = 0;              // of that
     std::string text;                   // the file's note about itself; usually empty
     std::vector<std::string> problems;  // empty: the file is in order
 };
@@ -64,6 +67,17 @@ const char* coding_name(uint32_t coding) { return coding == GIM_CODING_LOSSLESS 
 const char* plane_name(uint32_t kind) {
     constexpr const char* kNames[] = {"normals", "colors", "displacements"};
     return kNames[kind];
+}
+
+void add_raster(const Bytes& file, Description& d) {
+    constexpr const char* kTypes[] = {"float32", "float64", "float16", "uint8", "int8", "uint16", "int16", "uint32", "int32"};
+    const Result<RasterImage> image = decode_raster_image(file);
+    if (!image.ok()) {
+        d.problems.push_back("decoding fails: " + image.error().message);
+        return;
+    }
+    d.imported = kTypes[static_cast<size_t>(image.value().type)];
+    d.channels = image.value().channels;
 }
 
 void add_image(const Decoder& decoder, uint32_t index, Description& d) {
@@ -146,6 +160,7 @@ Result<Description> describe(const Bytes& file) {
         const Result<std::vector<DecodedImage>> decoded = decode_images(file, 0);
         if (!decoded.ok()) d.problems.push_back("decoding fails: " + decoded.error().message);
     }
+    if (d.problems.empty() && holds_raster(file)) add_raster(file, d);
     return d;
 }
 
@@ -252,6 +267,7 @@ void print_json(const std::string& path, const Description& d) {
                              {"text", d.text},
                              {"problems", d.problems},
                              {"intact", d.problems.empty()}};
+    if (!d.imported.empty()) document["imported"] = {{"type", d.imported}, {"channels", d.channels}};
     if (d.info.has_boxes != 0) document["box"] = to_json(d.info.box);
     std::fputs(json_text(document).c_str(), stdout);
 }
@@ -282,6 +298,8 @@ void print_text(const std::string& path, const Description& d) {
     std::printf("  origin %.17g, %.17g, %.17g (%s)\n", info.origin[0], info.origin[1], info.origin[2],
                 info.is_relative != 0 ? "binary64; decoded positions are relative to it" : "binary32");
     print_bounds(info);
+    if (!d.imported.empty())
+        std::printf("  imported image: %s, %u channels and the mask\n", d.imported.c_str(), d.channels);
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
         std::printf("image %zu: %u %s", i, image.paths, paths_name(info.layout));

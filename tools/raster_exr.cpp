@@ -103,7 +103,7 @@ struct Plane {
     bool is_uint = false;
     std::vector<uint32_t> bits;
 
-    double at(size_t i) const { return is_uint ? double{bits[i]} : double{std::bit_cast<float>(bits[i])}; }
+    double at(size_t i) const { return is_uint ? bits[i] : double{std::bit_cast<float>(bits[i])}; }
 };
 
 Result<void> set_mask(const Plane* mask, RasterImage& image) {

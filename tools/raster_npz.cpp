@@ -92,7 +92,8 @@ Result<std::vector<uint64_t>> read_mask(const Arrays& arrays, const Layout3& lay
         for (uint64_t i = 0; i < samples; ++i) told.push_back(values[layout.at(i, *channel)]);
     } else {
         for (uint64_t i = 0; i < samples; ++i) {
-            for (const uint64_t k : channels) image.defined[i] &= std::isnan(values[layout.at(i, k)]) ? 0 : 1;
+            for (const uint64_t k : channels)
+                if (std::isnan(values[layout.at(i, k)])) image.defined[i] = 0;
         }
         return channels;
     }

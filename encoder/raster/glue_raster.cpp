@@ -11,7 +11,7 @@
 namespace gim {
 namespace {
 
-constexpr int64_t kSideBySide = 2;  // samples
+constexpr int64_t kSideBySide = 1;  // samples
 
 using Cell = std::array<int64_t, 3>;
 struct CellHash {

@@ -993,6 +993,7 @@ void write_invalid_rasters(Writer& out) {
                 }));
     header("malformed.raster-width-1", [](Header& h) { h.width = 1; });
     header("malformed.raster-too-many-samples", [](Header& h) { h.width = h.height = 65536; });
+    header("malformed.raster-bits-too-few", [](Header& h) { h.bits = 8; });
     header("malformed.raster-tangential", [](Header& h) { h.tangential = 8; });
     header("limit-exceeded.raster-side", [](Header& h) { h.width = 16386; });
     for (const auto& [name, type] : {std::pair("malformed.raster-labels", 6), std::pair("malformed.raster-normals", 3)})
@@ -1027,7 +1028,7 @@ void write_invalid_rasters(Writer& out) {
     table("malformed.raster-channel-bits-21", [](RasterTable&, Others& o) { o[1].bits = 21; });
     table("malformed.raster-channel-origin", [](RasterTable&, Others& o) { o[0].origin = 0x1p101f; });
     table("malformed.raster-channel-step", [](RasterTable&, Others& o) { o[0].step = 0; });
-    table("malformed.raster-channel-too-small", [](RasterTable&, Others& o) { o[1].bits = 1; });
+
     out.invalid("limit-exceeded.raster-channels",
                 with_parts(file, [](Parts& p) { p.header.width = p.header.height = 8192; }));
     const auto stream = [&](const char* name, const std::function<void(Bytes&)>& change) {

@@ -45,7 +45,7 @@ def bounds_of(file):
 
 
 def decode_all(data):
-    """Does what tests/decoder/vectors.h does: all levels of all images, then all planes, then labels. Returns the arrays by kind."""
+    """Does what tests/decoder/vectors.h does: all levels of all images, then all planes, then labels, then the raster. Returns the arrays by kind."""
     file = gim.open(data)
     read = {"f32": [], "tri": [], "vtx": [], "pln": [], "bnd": bounds_of(file), "lbl": []}
     for image in file.images:
@@ -76,4 +76,9 @@ def decode_all(data):
         except gim.Error as error:
             if error.status != gim.NO_SUCH_PLANE:
                 raise
+    try:
+        file.array()
+    except gim.Error as error:
+        if error.status != gim.NO_SUCH_PLANE:
+            raise
     return {kind: b"".join(array.tobytes() for array in arrays) for kind, arrays in read.items()}

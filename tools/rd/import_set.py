@@ -61,10 +61,7 @@ def pieces(mask):
 
 
 def turned(image, random):
-    kind = random.integers(8)
-    image = image[::-1] if kind & 1 else image
-    image = image[:, ::-1] if kind & 2 else image
-    return image.transpose(1, 0, 2) if kind & 4 else image
+    return np.rot90(image, random.integers(4))
 
 
 def packed(image, side, random):

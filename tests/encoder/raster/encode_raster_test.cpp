@@ -127,7 +127,8 @@ TEST(EncodeRaster, FloatsAreRoundedToTheBits) {
         const Back back = decoded(file.bytes);
         const double half = 1.001 * 2 / (std::exp2(bits) - 1) / 2;
         for (size_t i = 0; i < image.values.size(); ++i) {
-            if (image.defined[i / 5]) EXPECT_NEAR(back.values[i], image.values[i], half + 1e-6);
+            if (!image.defined[i / 5]) continue;
+            EXPECT_NEAR(back.values[i], image.values[i], half + 1e-6);
         }
         EXPECT_EQ(encoded(image, options).bytes, file.bytes);
     }
@@ -169,11 +170,11 @@ TEST(EncodeRaster, GluedBordersAreNearlyFree) {
 }
 
 TEST(EncodeRaster, TargetsAreMet) {
-    RasterImage image = folded_raster(60, 30, 0);
+    RasterImage image = folded_raster(40, 20, 0);
     image.type = SampleType::kFloat32;
     for (double& v : image.values) v = v / 7 + 0.01;
     size_t last = 0;
-    for (const double psnr : {45.0, 55.0, 65.0}) {
+    for (const double psnr : {48.0, 60.0}) {
         const Encoded file = encoded(image, options_of({RateTarget::Kind::kPsnr, psnr}));
         EXPECT_GE(file.report.error.psnr, psnr);
         EXPECT_LT(file.report.error.psnr, psnr + 3);
@@ -182,7 +183,7 @@ TEST(EncodeRaster, TargetsAreMet) {
     }
     const Encoded near = encoded(image, options_of({RateTarget::Kind::kMaxError, 0.01, true}));
     EXPECT_LE(near.report.error.hausdorff, 0.01 * near.report.error.diagonal);
-    for (const double bytes : {500.0, 900.0, 1500.0}) {
+    for (const double bytes : {900.0, 1600.0}) {
         const size_t size = encoded(image, options_of({RateTarget::Kind::kBytes, bytes})).bytes.size();
         EXPECT_LE(double(size), bytes);
         EXPECT_GT(double(size), 0.8 * bytes);

@@ -57,9 +57,10 @@ inline RasterImage folded_raster(uint32_t width, uint32_t height, uint32_t off) 
                 const int32_t a = around[(angle + shift) % 12], b = around[(angle + shift + 1) % 12];
                 return 2000 + a + (b - a) * static_cast<int32_t>(rest) / static_cast<int32_t>(steps);
             };
-            v[0] = is_defined ? mix(0) + (r > height && c % 2 == 1 ? off : 0) : 0;
-            v[1] = is_defined ? mix(9) : 0;
-            v[2] = is_defined ? 40 * c : 0;
+            const uint32_t rough = (at * at * 31 + c * c * 17 + at * c * 13) % 37;
+            v[0] = is_defined ? mix(0) + rough + (r > height && c % 2 == 1 ? off : 0) : 0;
+            v[1] = is_defined ? mix(9) + rough : 0;
+            v[2] = is_defined ? 40 * c + rough : 0;
         }
     }
     return image;
