@@ -36,7 +36,7 @@ class RasterRun {
           scale_(scale),
           options_(options),
           positions_(raster_positions(image)),
-          gluing_(glue_raster(image, positions_, tolerance())),
+          gluing_(glued()),
           reference_(reference_of(surface(), options.threads)) {}
 
     // Call nothing else but gluing() if not.
@@ -89,14 +89,23 @@ class RasterRun {
         if (surface.triangles.empty()) return {};
         return std::optional<ReferenceSurface>(std::in_place, std::move(surface), threads);
     }
-    Mesh surface() const {
+    // Positions in units, from the box's lower corner on.
+    std::vector<float> units() const {
         std::vector<float> units;
         for (const Vec3& p : positions_) {
             for (int k = 0; k < 3; ++k)
                 units.push_back(
                     static_cast<float>((p[k] - scale_.low[static_cast<size_t>(k)]) / double{scale_.units.step}));
         }
-        return raster_surface(gluing_, raster_triangles(gluing_, image_.width, image_.height, units), positions_);
+        return units;
+    }
+    RasterGluing glued() const {
+        RasterGluing gluing = glue_raster(image_, positions_, tolerance());
+        open_crowded_edges(image_.width, image_.height, units(), gluing);
+        return gluing;
+    }
+    Mesh surface() const {
+        return raster_surface(gluing_, raster_triangles(gluing_, image_.width, image_.height, units()), positions_);
     }
     // Quantizers rise by equal factors from 1 on. The last one leaves two bits.
     double quantizer(int step) const { return std::exp2(double(step) / kStepsPerOctave); }
@@ -170,8 +179,8 @@ void describe_surface(const RasterImage& image, const RasterRun& run, EncodeRepo
     mesh.triangles = surface.triangles;
     report.topology = summarize_topology(mesh);
     if (const uint64_t edges = report.topology.nonmanifold_edges; edges > 0)
-        report.warnings.push_back("glued where borders coincide, the surface has more than two triangles at " + std::to_string(edges) +
-                                  (edges == 1 ? " edge" : " edges"));
+        report.warnings.push_back("glued where borders coincide, the surface has more than two triangles at " +
+                                  std::to_string(edges) + (edges == 1 ? " edge" : " edges"));
 }
 
 Result<Encoded> run_stages(const RasterImage& image, const EncodeOptions& options, const Progress& progress) {

@@ -359,7 +359,7 @@ bool RasterCoder<Coder>::code_values(Models& models, const RasterGroup& group, c
             if (k > 0) e = e / 2 + 90 * found[0];
             if (k > 1) e += 50 * found[1];
         }
-        const int32_t rest = values[k] - expected[k];
+        const int32_t rest = Coder::kWrites ? values[k] - expected[k] : 0;
         uint32_t magnitude = Coder::kWrites ? static_cast<uint32_t>(std::abs(rest)) : 0;
         if (!code_magnitude(coder_, models.values, k, e, false, &magnitude)) return false;
         bool is_negative = false;

@@ -70,7 +70,8 @@ const char* plane_name(uint32_t kind) {
 }
 
 void add_raster(const Bytes& file, Description& d) {
-    constexpr const char* kTypes[] = {"float32", "float64", "float16", "uint8", "int8", "uint16", "int16", "uint32", "int32"};
+    constexpr const char* kTypes[] = {"float32", "float64", "float16", "uint8", "int8",
+                                      "uint16",  "int16",   "uint32",  "int32"};
     const Result<RasterImage> image = decode_raster_image(file);
     if (!image.ok()) {
         d.problems.push_back("decoding fails: " + image.error().message);

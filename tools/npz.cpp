@@ -69,6 +69,7 @@ Result<std::vector<NamedArray>> read_npz(std::span<const uint8_t> bytes, MemoryB
         if (!array.ok()) return error("'" + name + "': " + array.error().message);
         arrays.emplace_back(std::move(name), std::move(array.value()));
     }
+    if (arrays.empty()) return error("the .npz file holds no array");
     return arrays;
 }
 

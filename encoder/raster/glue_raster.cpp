@@ -109,30 +109,39 @@ uint32_t count_pieces(const RasterGluing& g, uint32_t width, uint32_t height) {
 
 }  // namespace
 
+void number_points(RasterGluing& g) {
+    const auto count = static_cast<uint32_t>(g.depth.size());
+    g.point.assign(count, kNone);
+    g.is_shared.assign(count, 0);
+    g.points = 0;
+    g.open = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (g.depth[i] == kUndefined) continue;
+        const uint32_t first = g.origin[i];
+        if (first != i) g.is_shared[i] = g.is_shared[first] = 1;
+        g.point[i] = first == i ? g.points++ : g.point[first];
+    }
+    for (uint32_t i = 0; i < count; ++i) g.open += g.depth[i] == kOnBorder && !g.is_shared[i] ? 1 : 0;
+}
+
 RasterGluing glue_raster(const RasterImage& image, const std::vector<Vec3>& positions, double tolerance) {
     RasterGluing g;
     find_depths(image, g);
     g.pieces = count_pieces(g, image.width, image.height);
     const auto count = static_cast<uint32_t>(g.depth.size());
     g.origin.resize(count);
-    g.point.resize(count, kNone);
-    std::vector<uint8_t> is_shared(count, 0);
     PointIndex index(image.width, positions, tolerance);
     for (uint32_t i = 0; i < count; ++i) {
         g.origin[i] = i;
-        if (g.depth[i] == kUndefined) continue;
-        if (g.depth[i] == kOnBorder) {
-            const uint32_t other = index.nearest(i);
-            if (other == kNone) {
-                index.add(i);
-            } else {
-                g.origin[i] = other;
-                is_shared[i] = is_shared[other] = 1;
-            }
+        if (g.depth[i] != kOnBorder) continue;
+        const uint32_t other = index.nearest(i);
+        if (other == kNone) {
+            index.add(i);
+        } else {
+            g.origin[i] = other;
         }
-        g.point[i] = g.origin[i] == i ? g.points++ : g.point[g.origin[i]];
     }
-    for (uint32_t i = 0; i < count; ++i) g.open += g.depth[i] == kOnBorder && !is_shared[i] ? 1 : 0;
+    number_points(g);
     return g;
 }
 

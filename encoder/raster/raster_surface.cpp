@@ -1,5 +1,6 @@
 #include "encoder/raster/raster_surface.h"
 
+#include <algorithm>
 #include <array>
 
 #include "decoder/pyramid/vector3.h"
@@ -54,6 +55,38 @@ std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t widt
         }
     }
     return triangles;
+}
+
+void open_crowded_edges(uint32_t width, uint32_t height, std::span<const float> units, RasterGluing& gluing) {
+    constexpr int kRounds = 8;
+    struct Edge {
+        std::array<uint32_t, 2> points, samples;
+    };
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<Edge> edges;
+        for (const Triangle& t : raster_triangles(gluing, width, height, units)) {
+            for (size_t k = 0; k < 3; ++k) {
+                const uint32_t a = t[k], b = t[(k + 1) % 3];
+                if (!gluing.is_shared[a] || !gluing.is_shared[b]) continue;
+                const auto [low, high] = std::minmax(gluing.point[a], gluing.point[b]);
+                edges.push_back({{low, high}, {a, b}});
+            }
+        }
+        std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.points < b.points; });
+        bool is_changed = false;
+        for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+            while (end < edges.size() && edges[end].points == edges[begin].points) ++end;
+            if (end - begin <= 2) continue;
+            for (size_t i = begin; i < end; ++i) {
+                for (const uint32_t sample : edges[i].samples) {
+                    is_changed = is_changed || gluing.origin[sample] != sample;
+                    gluing.origin[sample] = sample;
+                }
+            }
+        }
+        if (!is_changed) return;
+        number_points(gluing);
+    }
 }
 
 Mesh raster_surface(const RasterGluing& gluing, std::span<const Triangle> triangles,

@@ -14,6 +14,9 @@ namespace gim {
 std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t width, uint32_t height,
                                        std::span<const float> units);
 
+// Parts samples again where an edge of the glued surface would have more than two triangles. It looks a few times.
+void open_crowded_edges(uint32_t width, uint32_t height, std::span<const float> units, RasterGluing& gluing);
+
 // The surface through the first sample of each point. positions: one per sample.
 Mesh raster_surface(const RasterGluing& gluing, std::span<const Triangle> triangles,
                     const std::vector<Vec3>& positions);
