@@ -165,13 +165,6 @@ void RasterCoder<Coder>::look_around(Sample& s) const {
     constexpr uint8_t kUp[kPlaces] = {0, 1, 1, 1, 0, 2, 2, 2, 1};
     constexpr int8_t kRight[kPlaces] = {-1, 0, -1, 1, -2, 0, -1, 1, -2};
     s.defined = 0;
-    if (s.row >= 2 && s.column >= 2 && s.column + 1 < shape_.columns) {  // what follows, but quicker
-        for (uint32_t p = 0; p < kPlaces; ++p) {
-            s.places[p] = s.index - kUp[p] * shape_.columns + static_cast<uint32_t>(int32_t{kRight[p]});
-            s.defined |= work_.depth[s.places[p]] != kUndefined ? 1u << p : 0u;
-        }
-        return;
-    }
     for (uint32_t p = 0; p < kPlaces; ++p) {
         if (!is_defined(s.row - kUp[p], s.column + static_cast<uint32_t>(int32_t{kRight[p]}))) continue;
         s.defined |= 1u << p;
