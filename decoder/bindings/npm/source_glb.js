@@ -105,9 +105,10 @@ export class GimGlb {
   truncated(end) {
     return new GimSourceError("TRUNCATED", `the file ends before byte ${end}, which is needed`);
   }
-  // Where the parts lie is told by the JSON that came first.
+  // Where the parts lie is told by the JSON that came first: nothing more can be read.
   changed() {
-    throw new GimSourceError("CHANGED", "the GLB changed while it was read: load it again");
+    this.stop(new GimSourceError("CHANGED", "the GLB changed while it was read: load it again"));
+    throw this.controller.signal.reason;
   }
 
   // Resolves to bytes of the BIN chunk.

@@ -42,7 +42,10 @@ export class GIMGLTFExtension {
   }
   async afterRoot(result) {
     if (!this.glb) return;
-    await Promise.all([...this.meshes].map((mesh) => mesh.first)); // nodes that share a mesh have clones of it
+    // Nodes that share a mesh have clones of it, and it itself is in no scene.
+    const rootOf = (object) => (object.parent ? rootOf(object.parent) : object);
+    for (const mesh of [...this.meshes]) if (!result.scenes.includes(rootOf(mesh))) mesh.dispose();
+    await Promise.all([...this.meshes].map((mesh) => mesh.first));
     result.gim = new GIMScene(this);
   }
 
