@@ -20,8 +20,10 @@ sources_of() {
 compile() {
     local how=(-flto -Oz -DGIM_SMALL_CODE)
     case $1 in
-        decoder/pyramid/rows.cpp | decoder/pyramid/band_decoder.cpp | decoder/pyramid/synthesis.cpp | decoder/pyramid/cells.cpp | \
-            decoder/tiles/tile_surface.cpp | format/expectation.cpp | format/lift_tiles.cpp) how=(-flto -O2 -fno-unroll-loops) ;;
+        decoder/pyramid/rows.cpp | decoder/pyramid/band_decoder.cpp | decoder/pyramid/synthesis.cpp | \
+            decoder/pyramid/cells.cpp | decoder/tiles/tile_surface.cpp | format/expectation.cpp | format/lift_tiles.cpp)
+            how=(-flto -O2 -fno-unroll-loops)
+            ;;
         */memory.cpp) how=(-fno-builtin -mbulk-memory -Oz) ;;
     esac
     clang++-14 --target=wasm32-wasi -msimd128 -std=c++20 "${how[@]}" -ffp-contract=off -fno-exceptions -fno-rtti \
