@@ -2,8 +2,9 @@
 // What is alike stands together, so that brotli finds more of it. What follows from the rest is left out: sizes of code,
 // and alignments, which are hints.
 
-const REST = 0, DECLARED = 1, BRANCH = 2, CALL = 3, CONSTANT = 4, OFFSET = 5, LOCAL = 6, OPCODE = 7, BLOCK = OPCODE;
-export const STREAMS = 8;
+const REST = 0, DECLARED = 1, BRANCH = 2, CALL = 3, CONSTANT = 4, OFFSET = 5, LOCAL = 6, OPCODE = 7, BLOCK = OPCODE,
+  VECTOR = 8;
+export const STREAMS = 9;
 export const SIZE_BYTES = 3; // of code, in a module that is put together
 
 // Goes through a module from its start to its end. byte(stream) returns the next byte, which belongs to that stream;
@@ -27,7 +28,7 @@ export function traverse(byte, more, aligned, sized) {
   const simd = () => {
     const opcode = number(OPCODE);
     if (opcode < 12 || (opcode > 83 && opcode < 94)) memory();
-    if (opcode === 12 || opcode === 13) bytes(CONSTANT, 16);
+    if (opcode === 12 || opcode === 13) bytes(VECTOR, 16);
     if ((opcode > 20 && opcode < 35) || (opcode > 83 && opcode < 92)) byte(CONSTANT);
   };
   // Conversions that saturate, memory.copy and memory.fill.
