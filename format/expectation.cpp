@@ -36,6 +36,9 @@ void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row,
                    uint32_t* to) {
     const uint32_t inside = row < parent.rows ? std::clamp(parent.columns, begin, end) : begin;
     if (begin < inside) {
+        const BandWeights first = weights[0], later = weights[1];
+        const uint32_t parent_weight[3] = {first.parent, later.parent, later.parent};
+        const uint32_t beside_weight[3] = {first.beside_parent, later.beside_parent, later.beside_parent};
         const int32_t* from = parent.row(row);
         const int32_t* up = row > 0 ? parent.row(row - 1) : kNothing;
         const int32_t* down = row + 1 < parent.rows ? parent.row(row + 1) : kNothing;
@@ -46,11 +49,10 @@ void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row,
             const int32_t* above = up == kNothing ? kNothing : up + at;
             const int32_t* below = down == kNothing ? kNothing : down + at;
             for (size_t k = 0; k < 3; ++k) {
-                const BandWeights& w = weights[k > 0];
                 to[2 * at + k] = to[2 * at + 3 + k] =
-                    w.parent * magnitude_of(from[at + k]) +
-                    w.beside_parent * (magnitude_of(above[k]) + magnitude_of(below[k]) + magnitude_of(left[k]) +
-                                       magnitude_of(right[k]));
+                    parent_weight[k] * magnitude_of(from[at + k]) +
+                    beside_weight[k] * (magnitude_of(above[k]) + magnitude_of(below[k]) + magnitude_of(left[k]) +
+                                        magnitude_of(right[k]));
             }
         }
     }
