@@ -24,9 +24,11 @@ compile() {
     local how=(-flto -Oz -DGIM_SMALL_CODE)
     case $1 in
         decoder/pyramid/rows.cpp | decoder/pyramid/band_decoder.cpp | decoder/pyramid/synthesis.cpp | \
-            decoder/tiles/tile_surface.cpp | format/expectation.cpp | format/lift_tiles.cpp | decoder/refine/*)
-            how=(-flto -O2 -fno-unroll-loops) ;;
-        */memory.cpp) how=(-fno-builtin -Oz) ;;
+            decoder/pyramid/cells.cpp | decoder/tiles/tile_surface.cpp | format/expectation.cpp | \
+            format/lift_tiles.cpp | decoder/refine/*)
+            how=(-flto -O2 -fno-unroll-loops)
+            ;;
+        */memory.cpp) how=(-fno-builtin -mbulk-memory -Oz) ;;
     esac
     clang++-14 --target=wasm32-wasi -msimd128 -std=c++20 "${how[@]}" -ffp-contract=off -fno-exceptions -fno-rtti \
         -fno-math-errno -fvisibility=hidden -DNDEBUG -Wall -Wextra -I. -Idecoder/include -c "$1" -o "$2"
@@ -47,7 +49,7 @@ build_wasm() {
     # Loop strength reduction saves no time here and makes the code larger.
     wasm-ld-14 --no-entry --stack-first -z stack-size=65536 --lto-O2 -O3 --gc-sections --strip-all -mllvm -disable-lsr \
         "${exports[@]}" "${objects[@]}" -o "$WORK/$name.raw.wasm"
-    wasm-opt --enable-simd --flatten --rereloop -Oz -Oz --coalesce-locals-learning --reorder-locals \
+    wasm-opt --enable-simd --enable-bulk-memory --flatten --rereloop -Oz -Oz --coalesce-locals-learning --reorder-locals \
         --merge-similar-functions --strip-producers "$WORK/$name.raw.wasm" -o "$WORK/$name.wasm"
     node "$BINDINGS/wasm/embed.mjs" "$WORK/$name.wasm" "$WORK/${name}_wasm.js"
 }
