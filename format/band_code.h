@@ -210,7 +210,7 @@ bool BandCoder<Coder>::code_run(const Band& band, const BandSurroundings& around
     // A decoder is copied so that its state can stay in registers. After a failure nobody uses it again.
     std::conditional_t<Coder::kWrites, Coder&, Coder> coder = coder_;
     BandModels& models = models_;
-    const BandWeights &first = around.weights[0], &later = around.weights[1];
+    const BandWeights first = around.weights[0], later = around.weights[1];  // copies, which no write changes
     const bool paired = is_in_frames(models.kind);
     const bool across = around.orientation == Orientation::kVertical;
     const bool has_copies = around.rim && (across || row == 0 || row + 1 == band.rows);

@@ -76,6 +76,12 @@ struct DetailLanes {
 
 namespace lanes {
 
+// Rounds up to a multiple of four: a few stale lanes more are cheaper than the remainder of a loop.
+template <size_t N>
+constexpr size_t whole_groups(size_t count) {
+    return N % 4 == 0 ? (count + 3) / 4 * 4 : count;
+}
+
 // Functions of vector i in arrays by component.
 template <size_t N>
 float squared_length(const float (&a)[3][N], size_t i) {
@@ -115,9 +121,10 @@ void use_plain_frame(DetailLanes<N>& lanes, size_t i) {
 
 }  // namespace lanes
 
-// Makes the frames of all lanes from their tangents. cell_area: as in DetailSteps.
+// Makes the frames of the first lanes from their tangents. cell_area: as in DetailSteps.
 template <size_t N>
 void make_frames(DetailLanes<N>& all, size_t count, float cell_area) {
+    count = lanes::whole_groups<N>(count);
     auto& [u, v, area, along, axis, scale] = all;
     auto& [normal, tangent, across] = axis;
     for (size_t i = 0; i < count; ++i) {

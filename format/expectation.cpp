@@ -36,6 +36,9 @@ void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row,
                    uint32_t* to) {
     const uint32_t inside = row < parent.rows ? std::clamp(parent.columns, begin, end) : begin;
     if (begin < inside) {
+        const BandWeights first = weights[0], later = weights[1];
+        const uint32_t parent_weight[3] = {first.parent, later.parent, later.parent};
+        const uint32_t beside_weight[3] = {first.beside_parent, later.beside_parent, later.beside_parent};
         const int32_t* from = parent.row(row);
         const int32_t* up = row > 0 ? parent.row(row - 1) : kNothing;
         const int32_t* down = row + 1 < parent.rows ? parent.row(row + 1) : kNothing;
@@ -46,45 +49,51 @@ void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row,
             const int32_t* above = up == kNothing ? kNothing : up + at;
             const int32_t* below = down == kNothing ? kNothing : down + at;
             for (size_t k = 0; k < 3; ++k) {
-                const BandWeights& w = weights[k > 0];
                 to[2 * at + k] = to[2 * at + 3 + k] =
-                    w.parent * magnitude_of(from[at + k]) +
-                    w.beside_parent * (magnitude_of(above[k]) + magnitude_of(below[k]) + magnitude_of(left[k]) +
-                                       magnitude_of(right[k]));
+                    parent_weight[k] * magnitude_of(from[at + k]) +
+                    beside_weight[k] * (magnitude_of(above[k]) + magnitude_of(below[k]) + magnitude_of(left[k]) +
+                                        magnitude_of(right[k]));
             }
         }
     }
     std::fill(to + size_t{inside} * 6, to + size_t{end} * 6, 0u);
 }
 
-// Sums up all that is expected in a row.
-template <bool kParent, Orientation kOrientation>
-void weigh(const BandWeights* weights, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+// What other bands of the level add: the first weight times the magnitude in `alone`, and the second one times the sum of
+// two in `paired`, of the same place and of the next one.
+struct Beside {
+    const uint32_t *alone, *paired;
+    uint32_t weights[2][2];  // of the first component and of later ones
+};
+
+// Sums up all that is expected in a row. kBeside: whether other bands add to it.
+template <bool kBeside>
+void weigh(const BandWeights* weights, const Beside& beside, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
     const BandWeights first = weights[0], later = weights[1];
-    const uint32_t *above = work.magnitudes, *parents = work.parents, *horizontal = work.horizontal,
-                   *vertical = work.vertical;
+    const uint32_t *above = work.magnitudes, *parents = work.parents, *alone = beside.alone, *paired = beside.paired;
     uint32_t* __restrict expected = work.expected;
-    const auto weigh_one = [&](const BandWeights& w, ptrdiff_t i) {
-        uint32_t e = w.constant + w.above * above[i] + w.corners * (above[i - 3] + above[i + 3]);
-        if constexpr (kParent) e += parents[i];
-        if constexpr (kOrientation == Orientation::kVertical) e += w.horizontal * (horizontal[i - 3] + horizontal[i]);
-        if constexpr (kOrientation == Orientation::kDiagonal)
-            e += w.horizontal * horizontal[i] + w.vertical * (vertical[i] + vertical[i + 3]);
+    const auto weigh_one = [&](const BandWeights& w, const uint32_t(&b)[2], ptrdiff_t i) {
+        uint32_t e = w.constant + parents[i] + w.above * above[i] + w.corners * (above[i - 3] + above[i + 3]);
+        if constexpr (kBeside) e += b[0] * alone[i] + b[1] * (paired[i] + paired[i + 3]);
         expected[i] = e;
     };
     for (ptrdiff_t i = begin * 3; i < end * 3; i += 3) {
-        weigh_one(first, i);
-        weigh_one(later, i + 1);
-        weigh_one(later, i + 2);
+        weigh_one(first, beside.weights[0], i);
+        weigh_one(later, beside.weights[1], i + 1);
+        weigh_one(later, beside.weights[1], i + 2);
     }
 }
 
-template <Orientation kOrientation>
-void weigh_with_parent(const BandSurroundings& around, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
-    if (around.parent)
-        weigh<true, kOrientation>(around.weights, begin, end, work);
-    else
-        weigh<false, kOrientation>(around.weights, begin, end, work);
+// Loads what the bands that are coded before have around the columns begin .. end-1 of a row.
+Beside load_beside(const BandSurroundings& around, uint32_t row, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+    const BandWeights &first = around.weights[0], &later = around.weights[1];
+    const bool vertical = around.orientation == Orientation::kVertical;
+    const ptrdiff_t from = vertical ? begin - 1 : begin;
+    load_magnitudes(*around.horizontal, row, from, end, work.horizontal);
+    add_magnitudes(*around.horizontal, row + 1, from, end, work.horizontal);
+    if (vertical) return {work.magnitudes, work.horizontal - 3, {{0, first.horizontal}, {0, later.horizontal}}};
+    load_magnitudes(*around.vertical, row, begin, end + 1, work.vertical);
+    return {work.horizontal, work.vertical, {{first.horizontal, first.vertical}, {later.horizontal, later.vertical}}};
 }
 
 }  // namespace
@@ -104,19 +113,11 @@ void expect(const BandSurroundings& around, uint32_t row, uint32_t begin, uint32
     const auto first = static_cast<ptrdiff_t>(begin), last = static_cast<ptrdiff_t>(end);
     if (around.parent && row % 2 == 0)
         weigh_parents(*around.parent, around.weights, row / 2, begin / 2, (end + 1) / 2, work.parents);
-    switch (around.orientation) {
-        case Orientation::kHorizontal:
-            return weigh_with_parent<Orientation::kHorizontal>(around, first, last, work);
-        case Orientation::kVertical:
-            load_magnitudes(*around.horizontal, row, first - 1, last, work.horizontal);
-            add_magnitudes(*around.horizontal, row + 1, first - 1, last, work.horizontal);
-            return weigh_with_parent<Orientation::kVertical>(around, first, last, work);
-        case Orientation::kDiagonal:
-            load_magnitudes(*around.horizontal, row, first, last, work.horizontal);
-            add_magnitudes(*around.horizontal, row + 1, first, last, work.horizontal);
-            load_magnitudes(*around.vertical, row, first, last + 1, work.vertical);
-            return weigh_with_parent<Orientation::kDiagonal>(around, first, last, work);
-    }
+    if (!around.parent) std::fill(work.parents + first * 3, work.parents + last * 3, 0u);
+    if (around.orientation == Orientation::kHorizontal)
+        weigh<false>(around.weights, {}, first, last, work);
+    else
+        weigh<true>(around.weights, load_beside(around, row, first, last, work), first, last, work);
 }
 
 }  // namespace gim

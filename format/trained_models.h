@@ -23,11 +23,11 @@ constexpr bool is_in_frames(CoefficientKind kind) {
 
 // What each magnitude nearby adds to the expected one, in 1/256 of it.
 struct BandWeights {
-    uint32_t left, above, corners;   // in the same band; corners: above left and above right
-    uint32_t parent, beside_parent;  // beside_parent: its four neighbours
-    uint32_t horizontal, vertical;   // those bands of the same level, at each sample around
-    uint32_t cross;                  // later components of the triples left and above, but not of the same component
-    uint32_t first, second;          // components of the same triple
+    uint8_t left, above, corners;   // in the same band; corners: above left and above right
+    uint8_t parent, beside_parent;  // beside_parent: its four neighbours
+    uint8_t horizontal, vertical;   // those bands of the same level, at each sample around
+    uint8_t cross;                  // later components of the triples left and above, but not of the same component
+    uint8_t first, second;          // components of the same triple
     uint32_t constant;
 };
 

@@ -79,7 +79,7 @@ test_cross() {
 # The npm package and the viewer. What wants a browser, nginx or the gim program of another build skips, and says so, where
 # there is none.
 test_web() {
-    local name damaged="$GIM_ROOT/build/web/damaged"
+    local name damaged="$GIM_ROOT/build/web/damaged" tests="$GIM_ROOT/build/web/tests/web"
     install_packages "${GIM_WEB_PACKAGES[@]}"
     for name in node:nodejs npm:npm chromium:chromium; do
         command -v "${name%%:*}" >/dev/null || (install_packages "${name##*:}") || say "Skipped: no ${name%%:*}"
@@ -87,7 +87,8 @@ test_web() {
     command -v node >/dev/null && command -v npm >/dev/null ||
         { say "Skipped: the npm package stays untested" && return 0; }
     configure_and_build web
-    "$GIM_ROOT/build/web/tests/web/write_damaged" "$GIM_ROOT/spec/vectors" "$damaged" || die "write_damaged failed"
+    "$tests/write_damaged" "$GIM_ROOT/spec/vectors" "$damaged" || die "write_damaged failed"
+    "$tests/write_refined" "$GIM_ROOT/spec/vectors" "$damaged" "$GIM_ROOT/build/web/refined" || die "write_refined failed"
     bash "$GIM_ROOT/tools/npm.sh" || die "building the npm package failed"
     cd "$GIM_ROOT/tests/web"
     [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --no-audit --no-fund ||

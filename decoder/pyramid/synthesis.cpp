@@ -75,12 +75,11 @@ class DetailRows {
     // Writes the gathered details into their columns of a row. Copies have the steps of their sources.
     void write_gathered(Orientation orientation, float* out) {
         if (count_ == 0) return;
-        // A few stale lanes more are cheaper than the remainder of a loop.
-        const uint32_t rounded = (count_ + 3) / 4 * 4;
-        frames_.make_frames(lanes_, rounded);
+        const size_t rounded = lanes::whole_groups<kLanes>(count_);
+        frames_.make_frames(lanes_, count_);
         const float tangential = tangential_step(steps_, orientation);
         const auto& axis = lanes_.axis;
-        for (uint32_t i = 0; i < rounded; ++i) {
+        for (size_t i = 0; i < rounded; ++i) {
             const float a = dequantize(values_[0][i], normal_step(steps_, orientation, lanes_.scale[i]));
             const float b = dequantize(values_[1][i], tangential), c = dequantize(values_[2][i], tangential);
             for (uint32_t k = 0; k < 3; ++k) details_[k][i] = dot(axis[0][k][i], a, axis[1][k][i], b, axis[2][k][i], c);

@@ -143,7 +143,8 @@ void Patience::rebase() {
 
 void Patience::wait(uint32_t triangle, float room) {
     const float until = travel_ + kCaution * room / step_;
-    const float whole = std::clamp(until, 0.0f, static_cast<float>(kMostSteps));
+    // 0 also where sums of very large numbers are none.
+    const float whole = until > 0 ? std::min(until, static_cast<float>(kMostSteps)) : 0.0f;
     mesh_->set_patience(triangle, static_cast<uint16_t>(whole));
 }
 

@@ -84,11 +84,10 @@ class TileDetails {
     // Writes the gathered details.
     void write() {
         if (count_ == 0) return;
-        // A few stale lanes more are cheaper than the remainder of a loop.
-        const uint32_t rounded = (count_ + 3) / 4 * 4;
-        make_frames(lanes_, rounded, steps_.cell_area);
+        const size_t rounded = lanes::whole_groups<kLanes>(count_);
+        make_frames(lanes_, count_, steps_.cell_area);
         const auto& axis = lanes_.axis;
-        for (uint32_t i = 0; i < rounded; ++i) {
+        for (size_t i = 0; i < rounded; ++i) {
             const float tangential = step_[i] * steps_.tangential;
             const float a = dequantize(values_[0][i], step_[i] * lanes_.scale[i]);
             const float b = dequantize(values_[1][i], tangential), c = dequantize(values_[2][i], tangential);

@@ -1,9 +1,9 @@
 // The package in Chromium, from a plain <script type=module>. Skips where there is no browser.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { damagedFolder, here, launch, noBrowser, open, packageFolder, serve, vectorNames, vectorsFolder } from "./setup.mjs";
+import { damagedFolder, here, launch, noBrowser, open, packageFolder, refinedFolder, serve, vectorNames, vectorsFolder } from "./setup.mjs";
 
-const roots = { "": here, package: packageFolder, vectors: vectorsFolder, damaged: damagedFolder };
+const roots = { "": here, package: packageFolder, vectors: vectorsFolder, damaged: damagedFolder, refined: refinedFolder };
 const skip = noBrowser;
 const timeout = 120000;
 let browser, served;
@@ -76,6 +76,28 @@ test("a page that forbids workers decodes on its own thread", { skip, timeout },
   const { page, errors } = await openPage(strict.address);
   const found = await page.evaluate(decodeAtOnce, { names: valid.slice(0, 12), workers: 2 });
   assert.deepEqual({ ...found, started: 0 }, { wrong: 0, started: 0, failed: [true, "NOT_GIM"], kept: true });
+  assert.deepEqual(errors, []);
+});
+
+test("gim/refine gives what it gives natively, under a strict policy", { skip, timeout }, async (t) => {
+  const strict = await serve(roots, policy);
+  t.after(strict.close);
+  const { page, errors } = await openPage(strict.address);
+  const wrong = await page.evaluate(async () => {
+    const { GimRefine } = await import("/package/refine.mjs"), { wordsOf } = await import("/refine_all.mjs");
+    await GimRefine.ready;
+    const all = new Uint32Array(await read("refined/refined.bin")), wrong = [];
+    const lines = new TextDecoder().decode(await read("refined/refined.txt")).trim().split("\n");
+    let at = 0;
+    for (const line of lines) {
+      const [name, count] = line.split(" "), wanted = all.subarray(at, (at += Number(count)));
+      const found = wordsOf(GimDecoder, GimRefine, await read(`vectors/valid/${name}.gim`));
+      if (found.length !== wanted.length || found.some((word, i) => word !== wanted[i])) wrong.push(name);
+    }
+    return { wrong, compared: lines.length, words: at };
+  });
+  assert.deepEqual(wrong.wrong, []);
+  assert.ok(wrong.compared > 60 && wrong.words > 1e6);
   assert.deepEqual(errors, []);
 });
 

@@ -59,7 +59,8 @@ async function runs(folder) {
 
 test("the package has what is needed and no more", () => {
   const files = readdirSync(installed).sort();
-  assert.ok(["LICENSE", "README.md", "decoder.cjs", "decoder.d.ts", "decoder.mjs", "package.json"].every((f) => files.includes(f)));
+  const entries = ["decoder", "refine", "source", "three"].flatMap((entry) => [`${entry}.cjs`, `${entry}.d.ts`, `${entry}.mjs`]);
+  assert.ok(["LICENSE", "README.md", "package.json", ...entries].every((f) => files.includes(f)));
   for (const file of files) assert.match(file, /^(LICENSE|README\.md|package\.json|[a-z_]+\.(mjs|cjs|d\.ts))$/);
   assert.ok(files.every((file) => statSync(join(installed, file)).isFile()));
 });
@@ -96,6 +97,15 @@ const file = require("fs").readFileSync("sphere.gim");
   process.stdout.write(String(GimDecoder.decodeMesh(file).triangles.length / 3));
 });`;
 
+test("gim/refine in Node shares the decoder's errors", () => {
+  const body = `const wrong = ({ GimRefine }, { GimError }) => GimRefine.ready.then(() => {
+    try { GimRefine.open(new Uint8Array(3)); } catch (error) { process.stdout.write(String(error instanceof GimError && error.statusName)); }
+  });\n`;
+  writeFileSync(join(app, "refine.cjs"), `${body}wrong(require("gim/refine"), require("gim/decoder"));`);
+  writeFileSync(join(app, "refine.mjs"), `${body}wrong(await import("gim/refine"), await import("gim/decoder"));`);
+  for (const script of ["refine.cjs", "refine.mjs"]) assert.equal(run("node", script), "NOT_GIM");
+});
+
 test("require() and import in Node", () => {
   writeFileSync(join(app, "require.cjs"), nodeScript('Promise.resolve(require("gim/decoder"))'));
   writeFileSync(join(app, "import.cjs"), nodeScript('import("gim/decoder")'));
@@ -111,11 +121,20 @@ test("TypeScript knows the types", () => {
       const { values } = GimDecoder.decodePlane(new Uint8Array(bytes), { plane: "normals" });
       try { return mesh.positions.length + values.length; } catch (e) { return e instanceof GimError ? e.status : 0; }
     }`));
+  writeFileSync(join(app, "refine.ts"), `import { GimRefine, type GimClusters } from "gim/refine";
+    export function coarse(bytes: ArrayBuffer, positions: Float32Array): GimClusters {
+      const domain = GimRefine.open(bytes, { positions });
+      const mesh = domain.refined({ mostTriangles: 1000 });
+      const isDone: boolean = mesh.refine({ eye: [0, 0, 1], verticalFov: 1, viewportHeight: 600, pixelError: 2, need: (v) => v });
+      if (isDone) mesh[Symbol.dispose]();
+      return domain.clusters({ side: 4 });
+    }\n`);
   writeFileSync(join(app, "wrong.ts"), source(`GimDecoder.decodePlane(new ArrayBuffer(0), { plane: "smells" });`));
   const check = (file) => {
     const options = ["--noEmit", "--strict", "--target", "es2020", "--lib", "es2020,dom", "--module", "nodenext", "--moduleResolution", "nodenext"];
     return execFileSync("node", [join(here, "node_modules/typescript/bin/tsc"), ...options, file], { cwd: app, encoding: "utf8" });
   };
   check("fine.ts");
+  check("refine.ts");
   assert.throws(() => check("wrong.ts"), (error) => /smells/.test(error.stdout));
 });

@@ -31,15 +31,17 @@ export function ball(rings, sides, seed = 0) {
 
 // Runs the gim program.
 export const gim = (...options) => execFileSync(program, options, { encoding: "utf8" });
-// Returns the path of NAME.gim in build/web/meshes, and makes it from a mesh if it is not there. Meshes take seconds to encode.
-export async function encoded(name, makeMesh, ...options) {
-  const folder = join(root, "build/web/meshes"), file = join(folder, `${name}.gim`);
+// Returns the path of `name` in build/web/meshes, and encodes what make() returns if it is not there. It takes seconds.
+async function encodedFile(name, inputName, make, options) {
+  const folder = join(root, "build/web/meshes"), file = join(folder, name), input = join(folder, inputName);
   if (existsSync(file) && statSync(file).mtimeMs > statSync(program).mtimeMs) return file;
   mkdirSync(folder, { recursive: true });
-  const mesh = join(folder, `${name}.obj`);
-  writeFileSync(mesh, makeMesh());
-  await promisify(execFile)(program, ["encode", mesh, file, "--layout", "gim", "--quiet", ...options]);
-  rmSync(mesh);
+  writeFileSync(input, make());
+  await promisify(execFile)(program, ["encode", input, file, "--layout", "gim", "--quiet", ...options]);
+  rmSync(input);
   return file;
 }
+export const encoded = (name, makeMesh, ...options) => encodedFile(`${name}.gim`, `${name}.obj`, makeMesh, options);
+// The same for a scene: NAME.glb.
+export const encodedGlb = (name, makeGlb, ...options) => encodedFile(`${name}.glb`, `${name}-plain.glb`, makeGlb, options);
 export const withoutProgram = existsSync(program) ? false : `no program at ${program}`;

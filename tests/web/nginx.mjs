@@ -18,7 +18,7 @@ const configuration = (folder, port) => `
 daemon off; master_process off; pid ${folder}/pid; error_log ${folder}/errors warn;
 events { worker_connections 64; }
 http {
-  access_log off; default_type application/octet-stream;
+  access_log off; default_type application/octet-stream; types { text/html html; text/javascript js; }
   client_body_temp_path ${folder}/tmp; proxy_temp_path ${folder}/tmp; fastcgi_temp_path ${folder}/tmp;
   uwsgi_temp_path ${folder}/tmp; scgi_temp_path ${folder}/tmp;
   server {

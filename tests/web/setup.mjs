@@ -1,5 +1,5 @@
 // Where things are, and what all tests need. GIM_PACKAGE: the folder that tools/npm.sh fills; GIM_DAMAGED: that of
-// write_damaged; GIM_TGZ: the packed file; GIM_CHROMIUM: the browser.
+// write_damaged; GIM_REFINED: that of write_refined; GIM_TGZ: the packed file; GIM_CHROMIUM: the browser.
 import { createServer } from "node:http";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { readFile } from "node:fs/promises";
@@ -12,6 +12,7 @@ export const here = fileURLToPath(new URL(".", import.meta.url));
 const build = join(here, "../../build");
 export const packageFolder = process.env.GIM_PACKAGE ?? join(build, "npm/package");
 export const damagedFolder = process.env.GIM_DAMAGED ?? join(build, "web/damaged");
+export const refinedFolder = process.env.GIM_REFINED ?? join(build, "web/refined");
 export const vectorsFolder = join(here, "../../spec/vectors");
 export const tgz = process.env.GIM_TGZ ?? join(build, "npm", readdirSync(join(build, "npm")).find((n) => n.endsWith(".tgz")));
 const executablePath = process.env.GIM_CHROMIUM || "/usr/bin/chromium";

@@ -142,12 +142,12 @@ BandWeights fit_weights(const std::vector<Event>& events) {
             log_weight[i] = std::max(log_weight[i], std::log(kLeastWeight));
         }
     }
-    uint32_t n[kWeights];
-    for (size_t i = 0; i < kWeights; ++i) {
+    const auto rounded = [&](size_t i) {
         const double weight = std::exp(log_weight[i]);
-        n[i] = useful[i] && weight > 1.01 * kLeastWeight ? static_cast<uint32_t>(std::lround(weight * 256)) : 0;
-    }
-    return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]};
+        return useful[i] && weight > 1.01 * kLeastWeight ? static_cast<uint32_t>(std::lround(weight * 256)) : 0u;
+    };
+    const auto n = [&](size_t i) { return static_cast<uint8_t>(std::min(rounded(i), 255u)); };
+    return {n(0), n(1), n(2), n(3), n(4), n(5), n(6), n(7), n(8), n(9), rounded(10)};
 }
 
 // ---- states ---------------------------------------------------------------------------------------------------------

@@ -115,8 +115,8 @@ export interface GimBox {
 
 /** A part of the file. Chunks lie one after the other behind the index. */
 export interface GimChunk {
-  /** Seams, a level, text, or a plane: normals, colours, displacements. */
-  name: "SEAM" | "LEVL" | "META" | "NRML" | "COLR" | "DISP" | "????";
+  /** Seams, a level, text, a plane (normals, colours, displacements), or labels. */
+  name: "SEAM" | "LEVL" | "META" | "NRML" | "COLR" | "DISP" | "LABL" | "????";
   /** Of LEVL; else -1. */
   level: number;
   /** Its first byte in the file. */

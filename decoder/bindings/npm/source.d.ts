@@ -24,9 +24,9 @@ export class GimSourceError extends Error {
   readonly name: "GimSourceError";
   /**
    * NETWORK: no answer, twice. HTTP: a status that is no success. CHANGED: the file changed twice. TRUNCATED: the file or
-   * the answer is shorter than its index says. BUDGET: `maxBytes`. CLOSED: `close()` was called.
+   * the answer is shorter than its index says. BUDGET: `maxBytes`. CLOSED: `close()` was called. FORMAT: no GLB.
    */
-  readonly code: "NETWORK" | "HTTP" | "CHANGED" | "TRUNCATED" | "BUDGET" | "CLOSED";
+  readonly code: "NETWORK" | "HTTP" | "CHANGED" | "TRUNCATED" | "BUDGET" | "CLOSED" | "FORMAT";
   /** Of HTTP. */
   readonly httpStatus?: number;
 }
@@ -89,5 +89,41 @@ export class GimSource {
   /** The whole file. */
   whole(options?: GimWait): Promise<Uint8Array>;
   /** Ends requests, whose promises are rejected with CLOSED, and lets go of the bytes. */
+  close(): void;
+}
+
+export interface GimPartOptions {
+  /** Of the first request for the part. Default 4096. */
+  firstBytes?: number;
+  limits?: GimLimits;
+  signal?: AbortSignal;
+}
+
+/**
+ * A GLB file of which only parts are fetched: the JSON first, with what comes in the first 16,384 bytes, then what is asked
+ * for. What is asked for in one turn of the page and lies less than 4,096 bytes apart comes by one request. `loadGIMScene` of
+ * `gim/three` is made of it.
+ *
+ *     const glb = await GimGlb.open("scene.glb");
+ *     const view = glb.json.bufferViews[5];
+ *     const source = await glb.source(view.byteOffset ?? 0, view.byteLength);    // of a view with a .gim
+ *
+ * Servers are taken as GimSource takes them; one without ranges gives the whole file at once. A file that changes after its
+ * JSON came is an error, CHANGED: where its parts lie is not known any more.
+ */
+export class GimGlb {
+  /** Resolves when the JSON is here. Rejected with GimSourceError or the signal's reason. */
+  static open(input: GimSourceInput, options?: GimSourceOptions): Promise<GimGlb>;
+  /** As in the file. */
+  readonly json: any;
+  /** Bytes of the BIN chunk. */
+  readonly binSize: number;
+  readonly bytesLoaded: number;
+  readonly requests: number;
+  /** Bytes of the BIN chunk. RangeError if they are not in it. */
+  read(offset: number, size: number, options?: GimWait): Promise<Uint8Array>;
+  /** Opens a .gim that lies in the BIN chunk. Its `bytesLoaded` and `requests` are those of this part. */
+  source(offset: number, size: number, options?: GimPartOptions): Promise<GimSource>;
+  /** Ends requests and what waits for them, with CLOSED. */
   close(): void;
 }

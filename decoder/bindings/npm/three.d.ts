@@ -13,10 +13,10 @@
  * Positions of files whose origin is far away are relative to `userData.origin`, which no 32-bit number could hold.
  */
 import type {
-  BufferGeometry, Camera, DataTexture, Loader, LoadingManager, Material, Mesh, Object3DEventMap, WebGLRenderer,
+  BufferGeometry, Camera, DataTexture, Group, Loader, LoadingManager, Material, Mesh, Object3DEventMap, WebGLRenderer,
 } from "three";
 import type { GimBytes, GimLimits, GimPlaneName, GimPlaneOptions } from "gim/decoder";
-import type { GimSource, GimSourceInput, GimSourceOptions } from "gim/source";
+import type { GimGlb, GimSource, GimSourceInput, GimSourceOptions } from "gim/source";
 
 /** `geometry.userData` */
 export interface GIMGeometryData {
@@ -124,7 +124,7 @@ export class GIMBudget {
   /** Default 2^28. */
   constructor(maxBytes?: number);
   maxBytes: number;
-  readonly meshes: Set<GIMMesh>;
+  readonly meshes: Set<GIMMesh | GIMGLTFMesh>;
   /** What the meshes hold together. */
   readonly byteCount: number;
   /** Call it once a frame, before drawing. Cost O(meshes log meshes); no level is decoded here. */
@@ -136,12 +136,99 @@ export function planeTexture(bytes: GimBytes, options: GimPlaneOptions): DataTex
 /** Copies of a material with textures of `userData.textures`; an array if there are several images. */
 export function texturedMaterial(textures: GIMTextures[], material: Material): Material | Material[];
 
+export interface GIMSceneOptions {
+  /** Pixels by which surfaces may be off on the screen. Default 1. */
+  pixelError?: number;
+  /** Shows this level of all meshes always. Default: the camera chooses. */
+  level?: number;
+  /** Memory that the meshes share with others. Then `budget.update()` chooses levels, once a frame. */
+  budget?: GIMBudget;
+  /** What to refuse. */
+  limits?: GimLimits;
+}
+
+/**
+ * Loads a GLB whose meshes are .gim files (`EXT_gim_geometry`) by ranges. Resolves to what GLTFLoader gives, with `gim`, when
+ * the coarsest level of each mesh is here. Pictures come next. Each time a mesh is drawn, it chooses the level that its place on
+ * the screen needs, and fetches what that level lacks. All else, such as animations, is as GLTFLoader makes it.
+ *
+ *     const gltf = await loadGIMScene("scene.glb", new GLTFLoader());
+ *     scene.add(gltf.scene);
+ *
+ * loader: a GLTFLoader. Its manager, paths, headers, credentials and plugins count.
+ * Rejected with GimSourceError, GimError, or what GLTFLoader says. Later failures are events of the meshes.
+ * Of the options, `firstBytes` is for the JSON: default 16384.
+ */
+export function loadGIMScene(
+  input: GimSourceInput, loader: GLTFLoaderLike, options?: GIMSceneOptions & GimSourceOptions,
+): Promise<GIMGLTF>;
+
+/** What is used of three's GLTFLoader. */
+export interface GLTFLoaderLike {
+  manager: LoadingManager;
+  path: string;
+  resourcePath: string;
+  register(callback: (parser: any) => any): any;
+  unregister(callback: (parser: any) => any): any;
+  parseAsync(data: any, path: string): Promise<any>;
+}
+
+/** What GLTFLoader gives, and what refines in it. */
+export interface GIMGLTF {
+  scene: Group;
+  scenes: Group[];
+  gim: GIMScene;
+  /** animations, cameras, asset, parser, userData: as GLTFLoader gives them. */
+  [more: string]: any;
+}
+
+export interface GIMScene {
+  /** One for each node with such a mesh. */
+  readonly meshes: GIMGLTFMesh[];
+  /** Tells how many bytes and requests it took. */
+  readonly source: GimGlb;
+  /** Resolves when all meshes have their textures. */
+  readonly materials: Promise<void>;
+  /** Disposes of all meshes and ends requests. Materials and textures are yours to dispose of, as with GLTFLoader. */
+  dispose(): void;
+}
+
+/**
+ * A mesh of a glTF file: a group of one Mesh for each primitive, all at one level, so that borders between materials do not
+ * crack. It chooses its level as GIMMesh does, and keeps to one level of memory as that does. A clone shows a level of its own,
+ * and shares the file's bytes.
+ */
+export class GIMGLTFMesh extends Group<GIMMeshEventMap> {
+  private constructor();
+  /** Of the primitives, in the order of the file. Their geometries change with the level. */
+  readonly parts: Mesh[];
+  readonly source: GimSource | null;
+  /** The level shown; -1: none. */
+  readonly level: number;
+  readonly levelCount: number;
+  readonly triangleCount: number;
+  /** Bytes of memory: of the .gim and the geometry. Textures are not counted. */
+  readonly byteCount: number;
+  readonly error: unknown;
+  pixelError: number;
+  /** Resolves when the coarsest level is shown. */
+  readonly first: Promise<void>;
+  /** Chooses a level. Drawing does so too, unless there is a budget. */
+  update(camera: Camera, viewport: WebGLRenderer | number): void;
+  /** Shows this level from now on. Null: the camera chooses again. */
+  setLevel(level: number | null): this;
+  clone(): this;
+  dispose(): void;
+}
+
 /**
  * `EXT_gim_geometry` for GLTFLoader: `loader.register((parser) => new GIMGLTFExtension(parser))`. It makes the meshes of the
  * level that is asked for, by default the finest; geometries have the arrays that the extension's text describes.
+ * With `source`, meshes refine as they do with `loadGIMScene`, and all buffer views come from there: then give GLTFLoader's
+ * `parse` the source's `json`.
  */
 export class GIMGLTFExtension {
   /** parser: GLTFParser. level: beyond the coarsest of an image, that one. */
-  constructor(parser: unknown, options?: { level?: number; limits?: GimLimits });
+  constructor(parser: unknown, options?: { level?: number; limits?: GimLimits } | (GIMSceneOptions & { source: GimGlb }));
   readonly name: "EXT_gim_geometry";
 }

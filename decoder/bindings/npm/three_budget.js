@@ -1,6 +1,4 @@
 // Memory that many meshes share. Each frame it says which level each mesh may show: nearest first.
-import { bytesOfGeometry, geometrySize } from "./three_geometry.js";
-
 // Part of the memory that a plan may take. The rest is for geometries that are about to be replaced.
 const planned = 0.8;
 
@@ -45,7 +43,7 @@ export class GIMBudget {
   // First each mesh gets its coarsest level, nearest first, then what it needs, as far as there is room.
   share(plans) {
     let left = planned * this.maxBytes;
-    for (const { mesh } of plans) left -= mesh.byteCount - bytesOfGeometry(mesh.geometry) - mesh.reserved; // files and textures
+    for (const { mesh } of plans) left -= mesh.byteCount - mesh.geometryBytes - mesh.reserved; // files and textures
     for (const plan of plans) {
       const coarsest = plan.mesh.source.levelCount - 1;
       const size = this.sizeAt(plan.mesh, coarsest);
@@ -66,7 +64,7 @@ export class GIMBudget {
   }
   // Bytes of a level: its geometry, and what of the file is to come for it.
   sizeAt(mesh, level) {
-    return geometrySize(mesh.images, level) + Math.max(mesh.endOf(level) - mesh.source.bytes.length, 0);
+    return mesh.sizeOf(level) + Math.max(mesh.endOf(level) - mesh.source.bytes.length, 0);
   }
 
   // Whether a mesh may take so many bytes now. One that becomes coarser lets go of what it shows, if it must.

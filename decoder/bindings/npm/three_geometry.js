@@ -3,7 +3,7 @@ import { Box3, BufferAttribute, BufferGeometry, Sphere, Vector3 } from "three";
 import { GimDecoder } from "gim/decoder";
 
 // How large a mesh may be that is decoded at once instead of in a turn or a worker of its own.
-const smallTriangles = 8192;
+export const smallTriangles = 8192;
 
 // What a file holds at each level, once its seams are here (with any level).
 // kind: "hardMesh" or "grid". Returns for each image {coarsest, levels: [{vertices, triangles, end}]}; vertices: at most.

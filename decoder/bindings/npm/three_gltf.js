@@ -1,141 +1,209 @@
 // EXT_gim_geometry for GLTFLoader: meshes whose geometry is a .gim file in a buffer view.
-import { BufferAttribute, BufferGeometry, Group, Mesh, MeshStandardMaterial, Vector3 } from "three";
+import { DoubleSide, Group, LoaderUtils, Mesh, MeshStandardMaterial } from "three";
 import { GimDecoder } from "gim/decoder";
+import { GimGlb, GimSource } from "gim/source";
+import { survey } from "./three_geometry.js";
+import { decodeImages, extensionName, makeGeometries, shapeOf } from "./three_gltf_arrays.js";
+import { GIMGLTFMesh } from "./three_gltf_mesh.js";
 
-const name = "EXT_gim_geometry";
+const isGim = (primitive) => primitive.extensions?.[extensionName] !== undefined;
+const viewOf = (primitive) => primitive.extensions[extensionName].bufferView;
 
 export class GIMGLTFExtension {
-  // parser: of GLTFLoader. options: {level, limits}.
-  constructor(parser, { level = 0, limits = {} } = {}) {
+  // parser: of GLTFLoader. options: {level, limits}, or with source, a GimGlb: those of GIMGLTFMesh.
+  constructor(parser, { source = null, ...options } = {}) {
     this.parser = parser;
-    this.name = name;
-    this.level = level;
-    this.limits = limits;
+    this.name = extensionName;
+    this.glb = source;
+    this.options = options;
+    this.sources = new Map(); // promises of GimSources, by buffer view
+    this.meshes = new Set(); // that refine
+    this.materials = []; // promises
   }
 
+  // ---- hooks of GLTFLoader ------------------------------------------------------------------------------------------
+
+  beforeRoot() {
+    if (!this.glb) return;
+    const { parser, glb } = this;
+    // Who wants the whole BIN chunk gets it from here.
+    parser.extensions.KHR_binary_glTF ??= { get body() { return glb.read(0, glb.binSize).then(bufferOf); } };
+    for (const { primitives } of parser.json.meshes ?? [])
+      for (const primitive of primitives.filter(isGim)) this.sourceOf(viewOf(primitive)).catch(() => {}); // all in one turn
+  }
+  loadBufferView(index) {
+    const view = this.parser.json.bufferViews[index];
+    return this.isInGlb(view) ? this.glb.read(view.byteOffset ?? 0, view.byteLength).then(bufferOf) : null;
+  }
   // Null: a mesh without the extension, which GLTFLoader loads.
   loadMesh(index) {
     const mesh = this.parser.json.meshes[index];
-    return mesh.primitives.some((primitive) => primitive.extensions?.[name]) ? this.makeMesh(index, mesh) : null;
+    return mesh.primitives.some(isGim) ? this.makeMesh(index, mesh) : null;
   }
+  async afterRoot(result) {
+    if (!this.glb) return;
+    // Nodes that share a mesh have clones of it, and it itself is in no scene.
+    const rootOf = (object) => (object.parent ? rootOf(object.parent) : object);
+    for (const mesh of [...this.meshes]) if (!result.scenes.includes(rootOf(mesh))) mesh.dispose();
+    await Promise.all([...this.meshes].map((mesh) => mesh.first));
+    result.gim = new GIMScene(this);
+  }
+
+  // ---- meshes -------------------------------------------------------------------------------------------------------
+
   async makeMesh(index, definition) {
-    const { parser } = this;
+    const { parser } = this, { primitives } = definition;
     await GimDecoder.ready;
-    const parts = await Promise.all(definition.primitives.map((primitive) => this.makePart(primitive)));
     const title = parser.createUniqueName(definition.name || `mesh_${index}`);
-    parts.forEach((part, i) => {
+    const note = (part, i) => {
       part.name = title;
       Object.assign(part.userData, definition.extras);
-      parser.assignFinalMaterial(part);
       parser.associations.set(part, { meshes: index, primitives: i });
-    });
-    if (parts.length === 1) return parts[0];
-    const group = new Group().add(...parts);
+    };
+    const views = [...new Set(primitives.filter(isGim).map(viewOf))];
+    const ofView = (view) => primitives.filter((primitive) => isGim(primitive) && viewOf(primitive) === view);
+    const made = await Promise.all([
+      ...views.map((view) => (this.glb ? this.makeRefined(view, ofView(view)) : this.makeWhole(view, ofView(view)))),
+      ...primitives.filter((primitive) => !isGim(primitive)).map((primitive) => this.makePlain(primitive)),
+    ]);
+    const parts = made.flatMap((one) => one.parts).map(({ part, primitive }) => ({ part, i: primitives.indexOf(primitive) }));
+    for (const { part, i } of parts.sort((a, b) => a.i - b.i)) note(part, i);
+    const objects = this.glb ? made.flatMap((one) => one.objects) : parts.map(({ part }) => part);
+    if (objects.length === 1 && objects[0].isMesh) return objects[0];
+    const group = objects.length === 1 ? objects[0] : new Group().add(...objects);
     group.name = title;
+    Object.assign(group.userData, definition.extras);
     parser.associations.set(group, { meshes: index });
     return group;
   }
-  async makePart(primitive) {
-    const { parser } = this;
-    const material = primitive.material === undefined ? new MeshStandardMaterial() : await parser.getDependency("material", primitive.material);
-    const extension = primitive.extensions?.[name];
-    if (!extension) return new Mesh((await parser.loadGeometries([primitive]))[0], material);
-    const bytes = new Uint8Array(await parser.getDependency("bufferView", extension.bufferView));
-    const geometry = geometryOf(bytes, primitive.attributes, extension, this.level, this.limits);
-    return new Mesh(geometry, material);
+  // All of these give {objects, parts: [{part, primitive}]}: what is put into the scene, and the mesh of each primitive.
+  async makePlain(primitive) {
+    const material = await this.materialOf(primitive);
+    const part = new Mesh((await this.parser.loadGeometries([primitive]))[0], material);
+    this.parser.assignFinalMaterial(part);
+    return { objects: [part], parts: [{ part, primitive }] };
+  }
+  async makeWhole(view, primitives) {
+    const bytes = new Uint8Array(await this.parser.getDependency("bufferView", view)), { level = 0, limits } = this.options;
+    const shapes = primitives.map(shapeOf), info = GimDecoder.info(bytes, limits);
+    const images = survey(bytes, info, "grid", limits);
+    const geometries = makeGeometries(await decodeImages(bytes, bytes, images, level, shapes, { ...limits }), shapes, info);
+    const materials = await Promise.all(primitives.map((primitive) => this.materialOf(primitive)));
+    const parts = primitives.map((primitive, i) => ({ part: new Mesh(geometries[i], materials[i]), primitive }));
+    for (const { part } of parts) this.parser.assignFinalMaterial(part);
+    return { objects: parts.map(({ part }) => part), parts };
+  }
+  async makeRefined(view, primitives) {
+    const source = await this.sourceOf(view), ofLabels = this.labelsOf(view, source, primitives);
+    ofLabels.catch(() => {}); // the mesh hears of it
+    const mesh = new GIMGLTFMesh({
+      source, ofLabels, primitives: primitives.map(shapeOf), meshes: this.meshes,
+      placeholders: primitives.map((primitive) => this.placeholderOf(primitive)),
+      materials: () => primitives.map((primitive) => this.materialOf(primitive)),
+      finishMaterial: (part) => this.parser.assignFinalMaterial(part),
+    }, this.options);
+    await mesh.first;
+    this.materials.push(mesh.dressed);
+    if (!primitives.some((primitive) => this.hasPictures(primitive))) await mesh.dressed;
+    return { objects: [mesh], parts: primitives.map((primitive, i) => ({ part: mesh.parts[i], primitive })) };
+  }
+
+  // ---- materials ----------------------------------------------------------------------------------------------------
+
+  async materialOf({ material }) {
+    return material === undefined ? new MeshStandardMaterial() : this.parser.getDependency("material", material);
+  }
+  definitionOf({ material }) {
+    return this.parser.json.materials?.[material] ?? {};
+  }
+  hasPictures(primitive) {
+    return /"index":/.test(JSON.stringify(this.definitionOf(primitive)));
+  }
+  // The material without its textures.
+  placeholderOf(primitive) {
+    const { pbrMetallicRoughness = {}, doubleSided } = this.definitionOf(primitive);
+    const { baseColorFactor = [1, 1, 1, 1], metallicFactor = 1, roughnessFactor = 1 } = pbrMetallicRoughness;
+    const material = new MeshStandardMaterial({ metalness: metallicFactor, roughness: roughnessFactor });
+    material.color.setRGB(...baseColorFactor.slice(0, 3));
+    if (doubleSided) material.side = DoubleSide;
+    return material;
+  }
+
+  // ---- bytes --------------------------------------------------------------------------------------------------------
+
+  isInGlb({ buffer }) {
+    return this.glb !== null && buffer === 0 && this.parser.json.buffers[0].uri === undefined;
+  }
+  sourceOf(view) {
+    if (!this.sources.has(view)) this.sources.set(view, this.openSource(view));
+    return this.sources.get(view);
+  }
+  async openSource(index) {
+    const view = this.parser.json.bufferViews[index], { limits } = this.options;
+    if (this.isInGlb(view)) return this.glb.source(view.byteOffset ?? 0, view.byteLength, { limits });
+    return GimSource.open(await this.parser.getDependency("bufferView", index), { limits });
+  }
+  // Labels lie behind all levels, and are wanted with the first. Returns bytes that have header, index, seams and labels.
+  async labelsOf(index, source, primitives) {
+    const chunk = source.chunks.find(({ name }) => name === "LABL"), isWanted = primitives.some((primitive) => shapeOf(primitive).label !== undefined);
+    await source.level(source.levelCount - 1);
+    const end = chunk ? chunk.offset + chunk.size : 0;
+    if (!isWanted || source.bytes.length >= end) return source.bytes;
+    const bytes = new Uint8Array(end), { byteOffset = 0 } = this.parser.json.bufferViews[index];
+    const labels = await this.glb.read(byteOffset + chunk.offset, chunk.size);
+    bytes.set(source.bytes.subarray(0, end));
+    bytes.set(labels, chunk.offset);
+    return bytes;
   }
 }
 
-// The arrays of a level, as the extension's text numbers the steps.
-function geometryOf(bytes, attributes, { label, places }, level, limits) {
-  const info = GimDecoder.info(bytes, limits), parts = [];
-  const isTextured = attributes.TEXCOORD_0 !== undefined;
-  for (let image = 0; image < info.imageCount; ++image) {
-    const { coarsestLevel } = GimDecoder.levelInfo(bytes, { ...limits, image });
-    const options = { ...limits, image, level: Math.min(level, coarsestLevel) };
-    const part = isTextured ? texturedPart(bytes, options) : GimDecoder.decodeHardMesh(bytes, options);
-    finishPart(part, info, places?.slice(3 * image, 3 * image + 3));
-    if (attributes.TANGENT !== undefined) part.tangents = tangentsOf(part);
-    parts.push(choose(part, label === undefined ? null : labelled(bytes, options, label)));
+// As an ArrayBuffer of its own.
+function bufferOf(bytes) {
+  return bytes.length === bytes.buffer.byteLength ? bytes.buffer : bytes.slice().buffer;
+}
+
+// What refines in a scene: `gim` of what GLTFLoader gives.
+class GIMScene {
+  constructor({ glb, meshes, materials }) {
+    this.source = glb;
+    this.meshSet = meshes;
+    this.materials = Promise.all(materials).then(() => {});
+    this.materials.catch(() => {}); // who awaits it hears of it
   }
-  const geometry = new BufferGeometry(), widths = { positions: 3, normals: 3 };
-  if (isTextured) widths.texcoords = 2;
-  if (attributes.TANGENT !== undefined) widths.tangents = 4;
-  const names = { positions: "position", normals: "normal", texcoords: "uv", tangents: "tangent" };
-  for (const [field, width] of Object.entries(widths))
-    geometry.setAttribute(names[field], new BufferAttribute(Float32Array.from(parts.flatMap((part) => Array.from(part[field]))), width));
-  let first = 0;
-  const triangles = parts.flatMap((part) => {
-    const moved = Array.from(part.triangles, (v) => v + first);
-    first += part.positions.length / 3;
-    return moved;
-  });
-  geometry.setIndex(new BufferAttribute(new (first > 65535 ? Uint32Array : Uint16Array)(triangles), 1));
-  return geometry;
+  get meshes() {
+    return [...this.meshSet];
+  }
+  dispose() {
+    for (const mesh of this.meshes) mesh.dispose();
+    this.source.close();
+  }
 }
 
-// Samples as vertices, with the normals that the mesh for shading has at the same corners.
-function texturedPart(bytes, options) {
-  const grid = GimDecoder.decodeGrid(bytes, options), hard = GimDecoder.decodeHardMesh(bytes, options);
-  grid.triangles.forEach((v, i) => grid.normals.set(hard.normals.subarray(3 * hard.triangles[i], 3 * hard.triangles[i] + 3), 3 * v));
-  return grid;
-}
-
-function finishPart({ positions, normals, texcoords }, info, place) {
-  if (info.isRelative) for (let i = 0; i < positions.length; ++i) positions[i] += info.origin[i % 3];
-  for (let i = 0; i < normals.length; i += 3) if (!normals[i] && !normals[i + 1] && !normals[i + 2]) normals[i + 2] = 1;
-  if (place) for (let i = 0; i < texcoords.length; ++i) texcoords[i] = place[i % 2] + place[2] * texcoords[i];
-}
-
-// Which triangles stay: pairs of them share a label.
-function labelled(bytes, options, label) {
-  if (!GimDecoder.decodeLabels) throw new Error("this decoder does not read the labels that a primitive asks for");
-  let labels;
+// Loads a GLB by ranges. loader: a GLTFLoader.
+export async function loadGIMScene(input, loader, options = {}) {
+  const isAddress = typeof input === "string", address = isAddress ? loader.manager.resolveURL(loader.path + input) : input;
+  const { level, limits, pixelError, budget, ...ofSource } = options;
+  const own = { headers: loader.requestHeader, credentials: loader.withCredentials ? "include" : undefined };
+  if (isAddress) loader.manager.itemStart(address);
+  let glb = null;
   try {
-    labels = GimDecoder.decodeLabels(bytes, options);
+    glb = await GimGlb.open(address, { ...own, limits, ...ofSource });
+    const folder = loader.resourcePath || (isAddress ? LoaderUtils.extractUrlBase(address) : "");
+    return await parse(glb, loader, folder, { level, limits, pixelError, budget, source: glb });
   } catch (error) {
-    if (error.statusName !== "NO_SUCH_PLANE") throw error;
-    return () => label === 0; // the file has none
+    glb?.close();
+    if (isAddress) loader.manager.itemError(address);
+    throw error;
+  } finally {
+    if (isAddress) loader.manager.itemEnd(address);
   }
-  return (triangle) => labels[triangle >> 1] === label;
 }
-// The part with the triangles that stay (null: all) and the vertices that they use.
-function choose(part, stays) {
-  const kept = [], isUsed = new Uint8Array(part.positions.length / 3);
-  for (let i = 0; i < part.triangles.length; ++i) {
-    if (stays && !stays(Math.floor(i / 3))) continue;
-    kept.push(part.triangles[i]);
-    isUsed[part.triangles[i]] = 1;
+function parse(glb, loader, folder, options) {
+  const register = (parser) => new GIMGLTFExtension(parser, options);
+  loader.register(register);
+  try {
+    return loader.parseAsync(glb.json, folder);
+  } finally {
+    loader.unregister(register); // parsers are made at once
   }
-  const vertices = [], numbers = new Uint32Array(isUsed.length);
-  isUsed.forEach((used, v) => used && (numbers[v] = vertices.push(v) - 1));
-  const pick = (array, width) => Float32Array.from({ length: vertices.length * width }, (_, i) => array[vertices[Math.floor(i / width)] * width + (i % width)]);
-  const chosen = { positions: pick(part.positions, 3), normals: pick(part.normals, 3), texcoords: pick(part.texcoords, 2), triangles: kept.map((v) => numbers[v]) };
-  if (part.tangents) chosen.tangents = pick(part.tangents, 4);
-  return chosen;
-}
-
-function tangentsOf({ positions, normals, texcoords, triangles }) {
-  const sums = new Float64Array(positions.length), tangents = new Float32Array((positions.length / 3) * 4);
-  const place = (v, k) => positions[3 * v + k], uv = (v, k) => texcoords[2 * v + k];
-  for (let i = 0; i < triangles.length; i += 3) {
-    const [a, b, c] = triangles.subarray(i, i + 3), p = uv(b, 0) - uv(a, 0), q = uv(b, 1) - uv(a, 1), r = uv(c, 0) - uv(a, 0), s = uv(c, 1) - uv(a, 1);
-    const sign = p * s - r * q < 0 ? -1 : 1;
-    for (let k = 0; k < 3; ++k) {
-      const along = sign * ((place(b, k) - place(a, k)) * s - (place(c, k) - place(a, k)) * q);
-      for (const v of [a, b, c]) sums[3 * v + k] += along;
-    }
-  }
-  const t = new Vector3(), n = new Vector3(), other = new Vector3();
-  for (let v = 0; v < positions.length / 3; ++v) {
-    t.fromArray(sums, 3 * v);
-    n.fromArray(normals, 3 * v);
-    const length = t.length();
-    t.addScaledVector(n, -n.dot(t));
-    // Any direction at right angles to n will do.
-    if (!(t.length() > 1e-6 * length)) t.crossVectors(n, Math.abs(n.x) < 0.5 ? other.set(1, 0, 0) : other.set(0, 1, 0));
-    t.normalize().toArray(tangents, 4 * v);
-    tangents[4 * v + 3] = -1;
-  }
-  return tangents;
 }

@@ -1,190 +1,52 @@
 // A mesh that shows the level of a .gim file that its place on the screen needs.
 import { BufferGeometry, Mesh, MeshStandardMaterial } from "three";
-import { GimDecoder } from "gim/decoder";
-import { GimSource } from "gim/source";
-import { boxOf, bytesOfGeometry, decodeParts, geometrySize, levelOf, makeGeometry, survey } from "./three_geometry.js";
+import { bytesOfGeometry, decodeParts, makeGeometry, survey } from "./three_geometry.js";
+import { withLevels } from "./three_levels.js";
 import { bytesOfTextures, decodeTextures, disposeTextures, planesOf, texturedMaterial } from "./three_texture.js";
-import { viewOf } from "./three_view.js";
 
-const none = -1; // no level
-
-export class GIMMesh extends Mesh {
+export class GIMMesh extends withLevels(Mesh) {
   constructor(input, material = new MeshStandardMaterial(), options = {}) {
     super(new BufferGeometry(), material);
-    const { pixelError = 1, level = null, budget = null, textures = true, ...ofSource } = options;
+    const { pixelError, level, budget, textures = true, ...ofSource } = options;
     this.type = "GIMMesh";
-    this.pixelError = pixelError;
-    this.fixedLevel = level;
     this.hasTextures = textures;
-    this.limits = { ...options.limits };
-    this.budget = budget;
-    this.source = null;
-    this.images = null; // what survey() says of them
-    this.level = none; // shown
-    this.wanted = none;
-    this.chosen = none; // by the last update
-    this.isPartial = false; // images are missing whose bytes have not come
-    this.isBusy = false;
-    this.isFinished = false;
-    this.isDisposed = false;
-    this.error = null;
-    this.reserved = 0; // bytes of the geometry that is being decoded
     this.textures = null;
-    this.controller = new AbortController();
-    budget?.add(this);
-    this.open(input, ofSource).catch((error) => this.fail(error));
+    this.setOptions(options);
+    this.open(input, ofSource).then(() => this.wantFirst()).catch((error) => this.fail(error));
   }
 
-  get levelCount() {
-    return this.images ? this.source.levelCount : 0;
-  }
   get triangleCount() {
     return (this.geometry.index?.count ?? 0) / 3;
   }
-  // Bytes held: the file's, the geometry's and the textures', and what is being decoded.
-  get byteCount() {
-    return (this.source?.bytes.length ?? 0) + bytesOfGeometry(this.geometry) + bytesOfTextures(this.textures) + this.reserved;
+  get geometryBytes() {
+    return bytesOfGeometry(this.geometry);
   }
-
-  async open(input, options) {
-    const { signal } = this.controller;
-    this.ownsSource = !(input instanceof GimSource);
-    const source = this.ownsSource ? await GimSource.open(input, { ...options, signal }) : input;
-    if (this.isDisposed) return this.ownsSource && source.close();
-    this.source = source;
-    await source.level(source.levelCount - 1, { signal });
-    this.prepare();
-    if (!this.budget) this.want(Math.min(this.fixedLevel ?? Infinity, source.levelCount - 1));
-  }
-  prepare() {
-    const { source } = this, { bytes, info } = source;
-    this.kind = this.hasTextures && planesOf(source.chunks).length > 0 ? "grid" : "hardMesh";
-    this.images = survey(bytes, info, this.kind, this.limits);
-    this.generation = source.generation;
-    this.box = boxOf(info);
-    this.index = bytes.slice(0, info.indexSize);
-    this.chosen = none;
-  }
-
-  // ---- which level --------------------------------------------------------------------------------------------------
-
-  // Chooses a level for a camera. viewport: a renderer, or the height of its picture in pixels.
-  update(camera, viewport) {
-    if (!this.images || this.error || this.isDisposed) return;
-    this.guard(() => this.want(this.choose(camera, viewport)));
+  get otherBytes() {
+    return bytesOfTextures(this.textures);
   }
   onBeforeRender(renderer, scene, camera) {
     if (!this.budget) this.update(camera, renderer);
   }
-  // Returns the level that the camera needs.
-  choose(camera, viewport) {
-    const last = this.source.levelCount - 1;
-    if (this.fixedLevel !== null) return Math.min(this.fixedLevel, last);
-    const box = this.box ?? this.geometry.boundingBox;
-    if (!box) return last;
-    this.updateWorldMatrix(true, false);
-    camera.updateWorldMatrix(true, false);
-    this.view = viewOf(this, box, camera, viewport);
-    const shown = this.chosen === none ? undefined : this.chosen;
-    this.chosen = GimDecoder.chooseLevel(this.index, { ...this.view, pixelError: this.pixelError, shown });
-    return this.chosen;
-  }
-  // Fixes the level; null: the camera chooses it again.
-  setLevel(level) {
-    this.fixedLevel = level;
-    if (level !== null && this.images && !this.budget) this.want(Math.min(level, this.source.levelCount - 1));
-    return this;
-  }
-  // level: -1 shows nothing.
-  want(level) {
-    if (level !== this.wanted) this.isFinished = false;
-    this.wanted = level;
-    if (!this.isBusy && !this.error && !this.isDone()) this.advance().catch((error) => this.fail(error));
-  }
-  isDone() {
-    return this.level === this.wanted && !this.isPartial && this.isFinished;
+  shownBox() {
+    return this.geometry.boundingBox;
   }
 
-  // ---- how it comes -------------------------------------------------------------------------------------------------
-
-  // Shows levels until the wanted one is shown: what is here first, each finer one as its bytes come.
-  async advance() {
-    this.isBusy = true;
-    try {
-      while (!this.isDisposed && !this.isDone()) {
-        this.checkGeneration();
-        // False: the budget has no room yet. Its next update asks again.
-        if (!(await this.step())) return;
-      }
-    } finally {
-      this.isBusy = false;
-    }
+  survey() {
+    const { bytes, info, chunks } = this.source;
+    this.kind = this.hasTextures && planesOf(chunks).length > 0 ? "grid" : "hardMesh";
+    return survey(bytes, info, this.kind, this.limits);
   }
-  async step() {
-    if (this.level === this.wanted && !this.isPartial) return this.finish();
-    if (this.wanted === none) return this.letGo();
-    const next = this.nextLevel();
-    return next === null ? this.waitFor() : this.decode(next);
+  async make(bytes, images, level, how) {
+    return makeGeometry(await decodeParts(bytes, images, level, this.kind, how), this.source.info, level);
   }
-  // The level to decode next: the wanted one, or the finest on the way to it whose bytes are here. Null: none.
-  nextLevel() {
-    if (this.isComplete(this.wanted)) return this.wanted;
-    const shown = this.level === none ? this.source.levelCount : this.level;
-    for (let level = this.wanted + 1; level < shown; ++level) if (this.isComplete(level)) return level;
-    const coarsest = this.source.levelCount - 1;
-    return this.level === none && this.source.has(coarsest) ? coarsest : null;
-  }
-  endOf(level) {
-    return Math.max(...this.images.map((image) => image.levels[levelOf(image, level)].end));
-  }
-  isComplete(level) {
-    return this.source.bytes.length >= this.endOf(level);
-  }
-  // Asks for all levels up to the wanted one, and waits for the first of them.
-  async waitFor() {
-    const missing = this.endOf(this.wanted) - this.source.bytes.length;
-    if (this.budget && !this.budget.hasRoom(this, missing, this.level)) return false;
-    const { signal } = this.controller;
-    const finest = (level) => Math.min(...this.images.map((image) => levelOf(image, level)));
-    const waits = [];
-    const from = this.level === none ? this.source.levelCount - 1 : this.level;
-    for (let level = Math.max(from, this.wanted); level >= this.wanted; --level)
-      if (!this.isComplete(level)) waits.push(this.source.level(finest(level), { signal }));
-    waits.forEach((wait) => wait.catch(() => {}));
-    await waits[0];
-    return true;
-  }
-  async decode(level) {
-    const { source } = this, { signal } = this.controller;
-    const size = geometrySize(this.images, level);
-    if (this.budget && !this.budget.hasRoom(this, size, level)) return false;
-    this.reserved = size;
-    try {
-      const bytes = source.bytes;
-      const here = this.images.filter((image) => image.levels[levelOf(image, level)].end <= bytes.length);
-      const how = { ...this.limits, signal, atOnce: this.level === none };
-      const parts = await decodeParts(bytes, here, level, this.kind, how);
-      if (this.isDisposed) return false;
-      this.isPartial = here.length < this.images.length;
-      this.show(makeGeometry(parts, source.info, level), level);
-    } finally {
-      this.reserved = 0;
-    }
-    return true;
-  }
-  show(geometry, level) {
-    const previous = this.level, old = this.geometry;
-    this.geometry = geometry;
-    this.level = level;
+  show(geometry) {
+    const old = this.geometry;
+    this.geometry = geometry ?? new BufferGeometry();
     old.dispose();
-    this.dispatchEvent({ type: "levelchange", level, previous, triangles: this.triangleCount });
   }
-  async finish() {
-    if (this.kind === "grid" && !this.textures && this.wanted !== none && !(await this.addTextures())) return false;
-    if (this.isDisposed || this.level !== this.wanted) return true;
-    this.isFinished = true;
-    this.dispatchEvent({ type: "finished", level: this.level, triangles: this.triangleCount });
-    return true;
+
+  complete() {
+    return this.kind !== "grid" || this.textures !== null || this.addTextures();
   }
   async addTextures() {
     const { source } = this, { signal } = this.controller;
@@ -206,43 +68,10 @@ export class GIMMesh extends Mesh {
     const samples = this.images.reduce((sum, { levels }) => sum + levels[0].vertices, 0);
     return this.source.info.fileSize - this.source.bytes.length + 8 * samples;
   }
-  // The file was read again from its start, because it changed: nothing that is known of it holds.
-  checkGeneration() {
-    if (this.generation === this.source.generation) return;
-    this.prepare();
-    this.wanted = Math.min(this.wanted, this.source.levelCount - 1);
-    this.letGo();
-  }
-  // Shows nothing.
-  letGo() {
-    this.show(new BufferGeometry(), none);
-    this.isPartial = false;
-    return true;
-  }
 
-  // ---- its end ------------------------------------------------------------------------------------------------------
-
-  guard(run) {
-    try {
-      run();
-    } catch (error) {
-      this.fail(error);
-    }
-  }
-  // Nothing is thrown to a render loop. What is shown stays.
-  fail(error) {
-    if (this.isDisposed) return;
-    this.error = error;
-    this.dispatchEvent({ type: "error", error });
-  }
-  dispose() {
-    if (this.isDisposed) return;
-    this.isDisposed = true;
-    this.controller.abort();
-    this.budget?.remove(this);
+  release() {
     this.geometry.dispose();
     disposeTextures(this.textures);
     if (this.textures) [].concat(this.material).forEach((material) => material.dispose());
-    if (this.ownsSource) this.source?.close();
   }
 }

@@ -4,22 +4,35 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, relative } from "node:path";
 import { fileURLToPath } from "node:url";
-import { STREAMS, join, traverse } from "../npm/module.js";
+import { SIZE_BYTES, STREAMS, join, traverse } from "../npm/module.js";
 
 const [input, output] = process.argv.slice(2);
 const moduleScript = relative(dirname(output), fileURLToPath(new URL("../npm/module.js", import.meta.url)));
 const module = readFileSync(input);
 
-const streams = Array.from({ length: STREAMS }, () => []);
-let from = 0;
-const take = (stream) => {
-  streams[stream].push(module[from]);
-  return module[from++];
-};
-traverse(take, () => from < module.length);
-const sizes = streams.map((stream) => stream.length);
-const bytes = Buffer.from(streams.flat());
-if (Buffer.compare(module, join(bytes, sizes)) !== 0) throw new Error(`${input}: an opcode is not known`);
+// The streams of a module. size: of the module that join() makes of them.
+function split(module) {
+  const streams = Array.from({ length: STREAMS }, () => []);
+  let from = 0, size = module.length;
+  const take = (stream) => {
+    streams[stream].push(module[from]);
+    return module[from++];
+  };
+  const skipNumber = (length) => {
+    const begin = from;
+    while (module[from++] > 127);
+    size += length - (from - begin);
+  };
+  traverse(take, () => from < module.length, () => skipNumber(1), (content) => {
+    skipNumber(SIZE_BYTES);
+    content();
+  });
+  return { bytes: Buffer.from(streams.flat()), sizes: streams.map((stream) => stream.length), size };
+}
+
+const { bytes, sizes, size } = split(module), joined = join(bytes, sizes, size);
+if (!WebAssembly.validate(joined) || Buffer.compare(split(joined).bytes, bytes) !== 0)
+  throw new Error(`${input}: an opcode is not known`);
 
 // Characters that need no escape in a string and none in a page's <script>.
 const alphabet = Array.from({ length: 95 }, (_, i) => String.fromCharCode(32 + i)).filter((c) => !"\"\\<'`".includes(c)).join("");
@@ -53,6 +66,6 @@ export function makeBytes() {
     const first = place(from);
     bytes[to++] = order[first < ${singles} ? first : ${singles} + (first - ${singles}) * ${alphabet.length} + place(++from)];
   }
-  return join(bytes, ${JSON.stringify(sizes)});
+  return join(bytes, ${JSON.stringify(sizes)}, ${size});
 }
 `);
