@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "encoder/code/wavelet_analysis.h"
@@ -27,11 +28,14 @@ struct FitSetting {
 class FitCodec {
   public:
     virtual ~FitCodec() = default;
-    virtual std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const = 0;
+    virtual std::shared_ptr<const ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) = 0;
+    // Tells that the coordinates of the last basis were changed, so that samples which the image does not have follow.
+    virtual void follow(const ImageBasis::Coordinates&) {}
     // The samples that a decoder has of a file of the image, in the frame of the fit. mends_folds: as files do.
     virtual std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) = 0;
-    // Mends the folds that the quantizer leaves in the bands of a file. Layouts whose files have no such bands do nothing.
-    virtual void repair(Pyramid<int32_t>&, const Units&) {}
+    // Mends the folds that the quantizer leaves in the bands of a file, one pyramid for each part. Layouts whose files
+    // have no such bands do nothing.
+    virtual void repair(std::span<Pyramid<int32_t>>, const Units&) {}
 };
 
 }  // namespace gim

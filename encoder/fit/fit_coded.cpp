@@ -21,7 +21,6 @@
 #include "encoder/base/parallel.h"
 #include "encoder/fit/fitter.h"
 #include "encoder/fit/prices.h"
-#include "encoder/fit/square_codec.h"
 #include "encoder/surface/surface_samples.h"
 
 namespace gim {
@@ -224,11 +223,12 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const std::unique_ptr<ImageBasis> basis = codec->basis(image, coding);
+        const std::shared_ptr<const ImageBasis> basis = codec->basis(image, coding);
         const Coordinates c = basis->analyse(image);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
         CoordinateSystem coordinates(system, *basis, gluing);
         const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
+        codec->follow(y);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
         for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
@@ -245,12 +245,6 @@ CodedFit::~CodedFit() = default;
 CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
-CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, reference, seed, Rails{})) {
-    impl_->codec = std::make_unique<SquareCodec>(start.width(), seams, impl_->gluing, impl_->reference, impl_->frame,
-                                                 impl_->fitter.front());
-}
-
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
                    const Rails& rails)
     : impl_(std::make_unique<Impl>(start, reference, seed, rails)) {
@@ -259,7 +253,7 @@ CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, c
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
-void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) { impl_->codec->repair(bands, units); }
+void CodedFit::repair(std::span<Pyramid<int32_t>> bands, const Units& units) { impl_->codec->repair(bands, units); }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);

@@ -36,8 +36,8 @@ Result<std::unique_ptr<TileCodec>> TileCodec::make(const TileImage& tiles, const
     return std::unique_ptr<TileCodec>(new TileCodec(std::move(coded), std::move(texels), shape, setting));
 }
 
-std::unique_ptr<ImageBasis> TileCodec::basis(const std::vector<float>& image, const DetailCoding& coding) const {
-    return std::make_unique<TileBasis>(
+std::shared_ptr<const ImageBasis> TileCodec::basis(const std::vector<float>& image, const DetailCoding& coding) {
+    return std::make_shared<TileBasis>(
         image, TilePlaces{coded_.complex.view(), texels_.of_sample, texels_.sample_at.size()}, shape_, coding);
 }
 

@@ -114,6 +114,19 @@ TEST(EncodeCharts, RateTargetsAreMet) {
     EXPECT_GE(bytes.value().bytes.size(), 1700u);
 }
 
+TEST(EncodeCharts, AFitToTheCodecTakesFewerBytesForAnEqualError) {
+    const TriangleMesh mesh = corpus::corpus().named("tori-2").mesh();
+    EncodeOptions options = chart_options(6000);
+    options.rate = {RateTarget::Kind::kPsnr, 45};
+    options.fit = FitStrength::kStiff;
+    const auto plain = encode(mesh, options);
+    options.fit = FitStrength::kAuto;
+    const auto fitted = encode(mesh, options);
+    ASSERT_TRUE(plain.ok() && fitted.ok());
+    EXPECT_LT(double(fitted.value().bytes.size()), 0.95 * double(plain.value().bytes.size()));
+    expect_topology_at_every_level(fitted.value(), "fitted");
+}
+
 TEST(EncodeCharts, TooFewSamplesAreRefusedWithWords) {
     const auto encoded = encode(corpus::corpus().named("plate-5").mesh(), chart_options(60));
     ASSERT_FALSE(encoded.ok());
