@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/charts/chart_plane.h"
+#include "encoder/charts/chart_ramps.h"
 #include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/file_units.h"
@@ -34,8 +35,11 @@ class ChartsLayout final : public LayoutImages {
           is_fitted_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
         if (options.rate.kind == RateTarget::Kind::kLossless) return;
         const MakeFitCodec make = [this](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
+            const auto ramps = std::make_shared<const ChartRamps>(charts_);
             auto codec = std::make_unique<PartsCodec>(
-                setting, parts_of(charts_), [this](std::vector<float>& image) { close_chart_seams(charts_, image); });
+                setting, parts_of(charts_),
+                OpenSeams{[this](std::vector<float>& image) { close_chart_seams(charts_, image); },
+                          [ramps](std::vector<float>& image) { ramps->transpose(image); }});
             codec_ = codec.get();
             return codec;
         };

@@ -3,8 +3,7 @@
 //
 //     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
 //
-// E is the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, and c the
-// current coordinates. Then the round steps as far as nothing folds over. The price is the quadratic that touches
+// E is the sampled distances, S the wavelet synthesis, P the closing of the seams, and c the current coordinates. Then the round steps as far as nothing folds over. The price is the quadratic that touches
 // bits(c) = kBits log2(1 + (c / (kNarrow step))^2) at c_i, times the worth of a bit: at high rates one more bit for
 // each coefficient of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
 //
@@ -80,22 +79,11 @@ void for_all(size_t count, const Body& body) {
     });
 }
 
-// Replaces the values of each class by their mean. image: interleaved triples.
-void average_glued(const GridGluing& gluing, std::vector<float>& image) {
-    for (const auto& members : gluing.shared) {
-        for (size_t k = 0; k < 3; ++k) {
-            float sum = 0;
-            for (const uint32_t v : members) sum += image[3 * size_t{v} + k];
-            for (const uint32_t v : members) image[3 * size_t{v} + k] = sum / static_cast<float>(members.size());
-        }
-    }
-}
-
 // The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
-    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const GridGluing& gluing)
-        : system_(system), basis_(basis), gluing_(gluing) {
+    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const FitCodec& codec)
+        : system_(system), basis_(basis), codec_(codec) {
         for (size_t k = 0; k < 3; ++k) {
             in_[k].resize(system.right.size());
             out_[k].resize(system.right.size());
@@ -104,7 +92,7 @@ class CoordinateSystem {
 
     std::vector<float> image_of(const Coordinates& y) const {
         std::vector<float> image = basis_.synthesize(y);
-        average_glued(gluing_, image);
+        codec_.close(image);
         return image;
     }
     // Returns the right side times `scale`.
@@ -128,13 +116,13 @@ class CoordinateSystem {
 
   private:
     Coordinates coordinates_of(std::vector<float> image) const {
-        average_glued(gluing_, image);
+        codec_.close_transposed(image);
         return basis_.transposed(std::move(image));
     }
 
     const FitSystem& system_;
     const ImageBasis& basis_;
-    const GridGluing& gluing_;
+    const FitCodec& codec_;
     Channels in_, out_;
 };
 
@@ -223,10 +211,9 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const std::shared_ptr<const ImageBasis> basis = codec->basis(image, coding);
-        const Coordinates c = basis->analyse(image);
+        const auto [basis, c] = codec->coordinates(image, coding);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
-        CoordinateSystem coordinates(system, *basis, gluing);
+        CoordinateSystem coordinates(system, *basis, *codec);
         const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
         codec->follow(y);
         const std::vector<float> change = coordinates.image_of(y);

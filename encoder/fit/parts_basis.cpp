@@ -131,21 +131,29 @@ void PartsBasis::gather_copies(Coordinates& coordinates, float weight) const {
     }
 }
 
-PartsBasis::Coordinates PartsBasis::analyse(const std::vector<float>& image) const {
+PartsBasis::Coordinates PartsBasis::coordinates_of(std::vector<std::vector<float>> boxes) const {
     Coordinates coordinates(size());
     for_each_part([&](size_t p) {
         const CodedPart& part = parts_[p];
-        std::vector<float> box = boxes_[p];
-        part.for_each_defined(
-            width_, [&](size_t in_part, size_t in_image) { std::copy_n(&image[3 * in_image], 3, &box[3 * in_part]); });
-        store(p,
-              gim::analyse<Irreversible97>(std::move(box), part.columns, part.rows, halvings(part.columns, part.rows),
-                                           part.seams),
+        const uint32_t steps = halvings(part.columns, part.rows);
+        store(p, gim::analyse<Irreversible97>(std::move(boxes[p]), part.columns, part.rows, steps, part.seams),
               coordinates);
     });
     gather_copies(coordinates, 0.5f);
     turn(coordinates, Way::kIntoFrames);
     return coordinates;
+}
+
+PartsBasis::Coordinates PartsBasis::coordinates() const { return coordinates_of(boxes_); }
+
+PartsBasis::Coordinates PartsBasis::analyse(const std::vector<float>& image) const {
+    std::vector<std::vector<float>> boxes = boxes_;
+    for_each_part([&](size_t p) {
+        parts_[p].for_each_defined(width_, [&](size_t in_part, size_t in_image) {
+            std::copy_n(&image[3 * in_image], 3, &boxes[p][3 * in_part]);
+        });
+    });
+    return coordinates_of(std::move(boxes));
 }
 
 std::vector<std::vector<float>> PartsBasis::boxes_of(const Coordinates& coordinates) const {

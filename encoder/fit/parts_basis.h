@@ -20,6 +20,8 @@ class PartsBasis final : public ImageBasis {
     PartsBasis(std::span<const CodedPart> parts, std::vector<std::vector<float>> boxes, uint32_t width, size_t samples,
                const DetailCoding& coding);
 
+    // Returns the coordinates of the boxes.
+    Coordinates coordinates() const;
     // Undefined samples have the values of the boxes.
     Coordinates analyse(const std::vector<float>& image) const override;
     // Undefined samples are 0.
@@ -39,6 +41,7 @@ class PartsBasis final : public ImageBasis {
     template <class Body>
     void for_each_part(const Body& body) const;
     Pyramid<float> pyramid_of(size_t part, const Coordinates& coordinates) const;
+    Coordinates coordinates_of(std::vector<std::vector<float>> boxes) const;
     void store(size_t part, const Pyramid<float>& pyramid, Coordinates& coordinates) const;
     // Sets source = weight * (source + copy), copy = 0. The coordinates must be out of frames.
     void gather_copies(Coordinates& coordinates, float weight) const;

@@ -36,8 +36,8 @@ MakeFitCodec square_codec(uint32_t side, const SeamTable& seams) {
     const auto known = std::make_shared<const SquareSeams>(side, seams);
     return [known](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
         std::vector<CodedPart> parts{{known->side, known->side, 0, 0, &known->table, {}}};
-        return std::make_unique<PartsCodec>(setting, std::move(parts),
-                                            [known](std::vector<float>& image) { known->close(image); });
+        const CloseSeams close = [known](std::vector<float>& image) { known->close(image); };
+        return std::make_unique<PartsCodec>(setting, std::move(parts), close);
     };
 }
 

@@ -123,8 +123,21 @@ TEST(EncodeCharts, AFitToTheCodecTakesFewerBytesForAnEqualError) {
     options.fit = FitStrength::kAuto;
     const auto fitted = encode(mesh, options);
     ASSERT_TRUE(plain.ok() && fitted.ok());
-    EXPECT_LT(double(fitted.value().bytes.size()), 0.95 * double(plain.value().bytes.size()));
+    EXPECT_LT(double(fitted.value().bytes.size()), 0.8 * double(plain.value().bytes.size()));
     expect_topology_at_every_level(fitted.value(), "fitted");
+}
+
+TEST(EncodeCharts, FewerSamplesAreTriedForATarget) {
+    const TriangleMesh mesh = corpus::corpus().named("tori-2").mesh();
+    EncodeOptions options = chart_options(20000);
+    options.rate = {RateTarget::Kind::kPsnr, 42};
+    const auto whole = encode(mesh, options);
+    options.try_smaller_sides = true;
+    const auto best = encode(mesh, options);
+    ASSERT_TRUE(whole.ok() && best.ok());
+    EXPECT_GE(best.value().report.error.psnr, 42);
+    EXPECT_LT(best.value().report.samples, 10001u);
+    EXPECT_LT(best.value().bytes.size(), whole.value().bytes.size());
 }
 
 TEST(EncodeCharts, TooFewSamplesAreRefusedWithWords) {

@@ -153,7 +153,8 @@ std::vector<CodedPart> two_boxes() {
     std::vector<CodedPart> parts{{14, 9, 2, 1, nullptr, {}}, {7, 20, 20, -1, nullptr, {}}};
     for (CodedPart& part : parts) {
         for (size_t i = 0; i < part.sample_count(); ++i) {
-            const uint32_t row = static_cast<uint32_t>(i / part.columns), column = static_cast<uint32_t>(i % part.columns);
+            const uint32_t row = static_cast<uint32_t>(i / part.columns),
+                           column = static_cast<uint32_t>(i % part.columns);
             const bool is_rim = row == 0 || column == 0 || row + 1 == part.rows || column + 1 == part.columns;
             part.defined.push_back(!is_rim && row + column > 3);
         }
