@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/best_size.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/planes/labels.h"
-#include "encoder/squares/best_side.h"
 #include "encoder/squares/choose_cut.h"
 #include "encoder/tiles/best_tiles.h"
 #include "encoder/within_budget.h"
@@ -27,7 +27,7 @@ Result<std::unique_ptr<FileRun>> LayoutRuns::make(const EncodeOptions& now, cons
                                                   CutPreferences& cuts) {
     GIM_CHECK(check_labels(prepared_.original.input, layout()));
     EncodeReport report = prepared_.report;
-    const bool may_grow = now.side == options_.side;  // smaller sides are trials
+    const bool may_grow = now.side == options_.side && now.samples == options_.samples;  // smaller sizes are trials
     GIM_TRY(images, layout_.make({prepared_.mesh, now, clock_, observer, report, cuts, tileable_, may_grow}));
     return std::make_unique<FileRun>(std::move(images), prepared_.original, now, clock_, std::move(report));
 }
@@ -58,7 +58,7 @@ Result<Estimate> LayoutRuns::estimate_without_choice(const EncodeOptions& now) {
 }
 
 Result<Estimate> LayoutRuns::first_estimate() {
-    if (layout() != Layout::kTiles) return estimate_without_choice(side_variants(options_).front());
+    if (layout() != Layout::kTiles) return estimate_without_choice(size_variants(options_).front());
     GIM_TRY(tried, try_usual_tiles(runs({}), options_, tileable_.has_creases()));
     return tried[0].estimate;
 }
@@ -69,7 +69,7 @@ Result<Estimate> LayoutRuns::estimate() {
         return tried[0].estimate;
     }
     Result<Estimate> best = Error{};
-    for (const EncodeOptions& variant : side_variants(options_)) {
+    for (const EncodeOptions& variant : size_variants(options_)) {
         const auto now = estimate_of(variant, {});
         const bool is_better = now.ok() && (!best.ok() || now.value().log_bytes < best.value().log_bytes);
         if (is_better || !(now.ok() || best.ok())) best = now;
@@ -92,7 +92,7 @@ CodingRuns LayoutRuns::runs(const Contest& contest) {
 
 Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {
     return layout() == Layout::kTiles ? best_of_tiles(runs(contest), now, tileable_.has_creases())
-                                      : best_of_sides(runs(contest), now);
+                                      : best_of_sizes(runs(contest), now);
 }
 
 Result<Encoded> LayoutRuns::best(const Contest& contest) {

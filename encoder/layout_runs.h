@@ -52,8 +52,8 @@ class LayoutRuns {
         std::unique_ptr<FileRun> run;
         std::optional<Estimate> estimate;
     };
-    using Variant = std::tuple<uint32_t, uint32_t, bool>;  // side, tiles, creases
-    static Variant variant_of(const EncodeOptions& now) { return {now.side, now.tiles, now.creases}; }
+    using Variant = std::tuple<uint32_t, uint32_t, uint32_t, bool>;  // side, samples, tiles, creases
+    static Variant variant_of(const EncodeOptions& now) { return {now.side, now.samples, now.tiles, now.creases}; }
 
     CodingRuns runs(const Contest& contest);
     Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);

@@ -38,7 +38,8 @@ struct EncodeArguments {
     EncodeCommand command;
     bool lossless = false;
     bool even = false;
-    const CLI::Option *layout = nullptr, *size = nullptr, *node_side = nullptr, *charts = nullptr, *tiles = nullptr;
+    const CLI::Option *layout = nullptr, *size = nullptr, *samples = nullptr, *node_side = nullptr, *charts = nullptr,
+                      *tiles = nullptr;
     std::optional<double> psnr, quality;
     std::string max_error, weld, mask_channel, channels;
     std::optional<uint64_t> bytes;
@@ -71,11 +72,13 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
                         "lie on a grid of this side, or on a finer one if the cut needs it")
             ->check(side_validator(5, 4097))
             ->capture_default_str();
-    sub->add_option("--samples", a.command.options.samples,
-                    "mcgim, tiles: most samples of the image, width * height. Charts that do not fit get more, with a "
-                    "warning")
-        ->check(CLI::Range(1000, 1 << 26))
-        ->capture_default_str();
+    a.samples =
+        sub->add_option(
+               "--samples", a.command.options.samples,
+               "mcgim, tiles: most samples of the image, width * height. Charts that do not fit get more, with a "
+               "warning. mcgim with --psnr, --max-error or --bytes: default: also fewer, if its file is better")
+            ->check(CLI::Range(1000, 1 << 26))
+            ->capture_default_str();
     a.charts = sub->add_option(
                       "--charts", a.command.options.charts,
                       "mcgim: number of charts. The encoder adds a few if the surface needs them. 0: the shape decides")
@@ -185,7 +188,8 @@ void apply_layout(EncodeArguments& a) {
 }
 
 void apply_rate(EncodeArguments& a) {
-    a.command.options.try_smaller_sides = a.size->count() == 0;
+    const CLI::Option* size = a.command.options.layout == Layout::kMcgim ? a.samples : a.size;
+    a.command.options.try_smaller_sides = size->count() == 0;
     RateTarget& rate = a.command.options.rate;
     if (a.lossless) rate = {RateTarget::Kind::kLossless, 0};
     if (a.psnr) rate = {RateTarget::Kind::kPsnr, *a.psnr};

@@ -31,6 +31,7 @@ struct ChartLevels {
     std::vector<ChartBox> charts;
     std::vector<uint32_t> mates;                // per path, chart after chart
     std::vector<std::vector<Vec3>> positions;   // per chart, its box row by row; zero where undefined
+    bool is_extended = false;                   // undefined samples have values that are cheap to code
     std::vector<std::vector<uint8_t>> defined;  // per chart, in the same order
     std::vector<LevelBorders> levels;           // finest first; at least one
 

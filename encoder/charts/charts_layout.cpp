@@ -1,13 +1,18 @@
 #include "encoder/charts/charts_layout.h"
 
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "encoder/charts/chart_plane.h"
+#include "encoder/charts/chart_ramps.h"
 #include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
-#include "encoder/fit/fold_repair.h"
+#include "encoder/code/file_units.h"
+#include "encoder/fit/fit_coded.h"
+#include "encoder/fit/parts_codec.h"
 #include "encoder/planes/rectangle_texels.h"
 
 namespace gim {
@@ -25,12 +30,35 @@ std::vector<CodedPart> parts_of(const ChartLevels& charts) {
 
 class ChartsLayout final : public LayoutImages {
   public:
-    ChartsLayout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options) : charts_(std::move(charts)) {
+    ChartsLayout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options)
+        : charts_(std::move(charts)),
+          is_fitted_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
         if (options.rate.kind == RateTarget::Kind::kLossless) return;
-        repair_ =
-            std::make_unique<FoldRepair>(charts_.image, mesh, parts_of(charts_),
-                                         [this](std::vector<float>& image) { close_chart_seams(charts_, image); });
+        const MakeFitCodec make = [this](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
+            const auto ramps = std::make_shared<const ChartRamps>(charts_);
+            auto codec = std::make_unique<PartsCodec>(
+                setting, parts_of(charts_),
+                OpenSeams{[this](std::vector<float>& image) { close_chart_seams(charts_, image); },
+                          [ramps](std::vector<float>& image) { ramps->transpose(image); }});
+            codec_ = codec.get();
+            return codec;
+        };
+        fit_ = std::make_unique<CodedFit>(charts_.image, make, mesh, options.seed);
     }
+
+    bool is_fitted_to_quantizer() const override { return is_fitted_; }
+
+    void fit(const CodingParameters& parameters, CodedFit::Effort effort, StageClock& clock) override {
+        clock.begin(Stage::kFit);
+        is_rough_ = effort == CodedFit::Effort::kSearch;
+        if (!units_) units_ = chart_units(charts_, parameters.bits);
+        Units units = *units_;
+        units.quantizer = quantizer_in_range(parameters.quantizer);
+        take_samples(fit_->run(units, effort, clock.progress()), units);
+        clock.begin(Stage::kCode);
+    }
+
+    void restart_fit() override { fit_->restart(); }
 
     void describe(EncodeReport& report) const override {
         report.layout = Layout::kMcgim;
@@ -46,9 +74,10 @@ class ChartsLayout final : public LayoutImages {
 
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
         CodingParameters with_repair = parameters;
-        if (repair_) {
+        with_repair.units = units_;
+        if (fit_ && !is_rough_) {
             with_repair.repair = [this](size_t, std::span<Pyramid<int32_t>> bands, const Units& units) {
-                repair_->repair(bands, units, kLastRepair);
+                fit_->repair(bands, units);
             };
         }
         return charts_writer(charts_, with_repair);
@@ -64,8 +93,27 @@ class ChartsLayout final : public LayoutImages {
     }
 
   private:
+    // Puts samples into the rectangle and into the boxes, which are extended.
+    void take_samples(std::vector<Vec3> positions, const Units& units) {
+        charts_.image.positions = std::move(positions);
+        const std::vector<float> image = to_units<float>(charts_.image.positions, units);
+        const auto& boxes = codec_->extend(image, units.quantizer);
+        for (size_t c = 0; c < boxes.size(); ++c) {
+            for (size_t i = 0; i < charts_.positions[c].size(); ++i) {
+                for (size_t k = 0; k < 3; ++k)
+                    charts_.positions[c][i][static_cast<int>(k)] =
+                        double{units.origin[k]} + double{units.step} * double{boxes[c][3 * i + k]};
+            }
+        }
+        charts_.is_extended = true;
+    }
+
     ChartLevels charts_;
-    std::unique_ptr<FoldRepair> repair_;  // of a lossy file
+    bool is_fitted_;
+    bool is_rough_ = false;          // after a quick fit
+    std::unique_ptr<CodedFit> fit_;  // of a lossy file
+    PartsCodec* codec_ = nullptr;    // of the fit
+    std::optional<Units> units_;     // of the first fit
 };
 
 }  // namespace

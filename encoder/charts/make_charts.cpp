@@ -11,6 +11,7 @@
 #include "encoder/charts/multi_chart.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/snapshot.h"
+#include "encoder/surface/progressive_mesh.h"
 
 namespace gim {
 
@@ -76,13 +77,29 @@ Result<ChartLevels> charts_within(const Mesh& mesh, const MultiChartOptions& cha
                              kMostLevels, chart_options.threads);
 }
 
+// A surface that is much denser than the samples makes charts slow and their borders ragged. The fit to the codec brings
+// the samples to the surface itself. Half as many vertices take 10 % more bytes on a horse of 70 dB, and twice as many
+// half the time again.
+constexpr double kVerticesPerSample = 0.4;
+
+Mesh surface_to_chart(const Mesh& mesh, const MultiChartOptions& options) {
+    ProgressiveMesh coarse(mesh);
+    simplify(coarse, mesh.positions, {static_cast<uint32_t>(kVerticesPerSample * options.samples), false, {}});
+    return coarse.coarsened() ? coarse.compact(mesh.positions).mesh : mesh;
+}
+
+bool is_fitted_to_codec(const EncodeOptions& options) {
+    return options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless;
+}
+
 bool lacks_samples(const Result<ChartLevels>& charts) { return !charts.ok() && charts.error().stage == Stage::kSample; }
 
 }  // namespace
 
-Result<ChartLevels> make_charts(const Mesh& mesh, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
+Result<ChartLevels> make_charts(const Mesh& whole, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
     MultiChartOptions options = chart_options_of(asked);
+    const Mesh mesh = is_fitted_to_codec(asked) ? surface_to_chart(whole, options) : whole;
     for (int doublings = 0;; ++doublings, options.samples *= 2) {
         options.even_axes = false;
         auto charts = charts_within(mesh, options, clock, observer, report);

@@ -48,6 +48,12 @@ std::vector<Vec3> defined_positions(const ChartLevels& images) {
     return positions;
 }
 
+Units box_units(const ChartLevels& images, uint32_t bits) {
+    const std::vector<Vec3> defined = defined_positions(images);
+    const std::span<const Vec3> all = defined;
+    return units_of_box({&all, 1}, bits);
+}
+
 // Base values relative to the one before.
 void chain_base(Pyramid<int32_t>* pyramid) {
     for (size_t i = pyramid->base.size(); i-- > 3;) pyramid->base[i] -= pyramid->base[i - 3];
@@ -58,7 +64,10 @@ Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_
     using Sample = typename Wavelet::Sample;
     const ChartBox& box = images.charts[c];
     std::vector<Sample> samples = to_units<Sample>(images.positions[c], units);
-    samples = extend_chart<Wavelet>(std::move(samples), images.defined[c], box.columns, box.rows, box.steps(), finest);
+    if (!images.is_extended) {
+        samples =
+            extend_chart<Wavelet>(std::move(samples), images.defined[c], box.columns, box.rows, box.steps(), finest);
+    }
     Pyramid<Sample> pyramid = analyse<Wavelet>(std::move(samples), box.columns, box.rows, box.steps());
     subtract_middle(&pyramid, units.bits);
     return pyramid;
@@ -102,14 +111,11 @@ Header header_of(const ChartLevels& images, const CodingParameters& parameters) 
     header.width = images.image.mask.width;
     header.height = images.image.mask.height;
     header.level_count = static_cast<uint32_t>(images.levels.size());
-    const std::vector<Vec3> defined = defined_positions(images);
-    const std::span<const Vec3> all = defined;
-    static_cast<Units&>(header) = units_of_box({&all, 1}, parameters.bits);
-    if (parameters.lossless) return header;
-    CellArea area;
-    for (size_t c = 0; c < images.charts.size(); ++c)
-        area.add(images.positions[c], images.defined[c], images.charts[c].columns, images.charts[c].rows);
-    area.set_details(&header);
+    if (parameters.lossless) {
+        static_cast<Units&>(header) = box_units(images, parameters.bits);
+    } else {
+        static_cast<Units&>(header) = parameters.units ? *parameters.units : chart_units(images, parameters.bits);
+    }
     return header;
 }
 
@@ -181,6 +187,15 @@ std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) 
 }
 
 }  // namespace
+
+Units chart_units(const ChartLevels& images, uint32_t bits) {
+    Units units = box_units(images, bits);
+    CellArea area;
+    for (size_t c = 0; c < images.charts.size(); ++c)
+        area.add(images.positions[c], images.defined[c], images.charts[c].columns, images.charts[c].rows);
+    area.set_details(&units);
+    return units;
+}
 
 Result<FileWriter> charts_writer(const ChartLevels& images, const CodingParameters& parameters) {
     GIM_CHECK(check(images, parameters));

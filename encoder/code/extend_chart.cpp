@@ -59,6 +59,18 @@ void drop_small(Pyramid<Sample>& pyramid, double threshold) {
     }
 }
 
+// One projection: drops details below the threshold, then puts the defined samples back.
+template <class Wavelet>
+void project(std::vector<typename Wavelet::Sample>& image, const std::vector<uint8_t>& defined, uint32_t columns,
+             uint32_t rows, uint32_t steps, double threshold) {
+    auto pyramid = analyse<Wavelet>(image, columns, rows, steps);
+    drop_small(pyramid, threshold);
+    const auto smooth = restore<Wavelet>(pyramid);
+    for (size_t i = 0; i < image.size(); ++i) {
+        if (!defined[i / 3]) image[i] = smooth[i];
+    }
+}
+
 }  // namespace
 
 template <class Wavelet>
@@ -78,13 +90,14 @@ std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet:
     const double first = std::max<double>(0.25 * (high - low), 2 * finest);
     for (int round = 0; round < rounds; ++round) {
         const double threshold = first * std::pow(finest / first, double(round) / std::max(rounds - 1, 1));
-        Pyramid<Sample> pyramid = analyse<Wavelet>(image, columns, rows, steps);
-        drop_small(pyramid, threshold);
-        const std::vector<Sample> smooth = restore<Wavelet>(pyramid);
-        for (size_t i = 0; i < image.size(); ++i) {
-            if (!defined[i / 3]) image[i] = smooth[i];
-        }
+        project<Wavelet>(image, defined, columns, rows, steps, threshold);
     }
+    return image;
+}
+
+std::vector<float> extend_again(std::vector<float> image, const std::vector<uint8_t>& defined, uint32_t columns,
+                                uint32_t rows, uint32_t steps, float finest, int rounds) {
+    for (int round = 0; round < rounds; ++round) project<Irreversible97>(image, defined, columns, rows, steps, finest);
     return image;
 }
 

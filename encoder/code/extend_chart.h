@@ -21,4 +21,8 @@ std::vector<typename Wavelet::Sample> extend_chart(std::vector<typename Wavelet:
                                                    const std::vector<uint8_t>& defined, uint32_t columns, uint32_t rows,
                                                    uint32_t steps, float finest, int rounds = 100);
 
+// Goes on with undefined samples that have good values already: the last rounds of extend_chart(). For 9/7.
+std::vector<float> extend_again(std::vector<float> image, const std::vector<uint8_t>& defined, uint32_t columns,
+                                uint32_t rows, uint32_t steps, float finest, int rounds);
+
 }  // namespace gim

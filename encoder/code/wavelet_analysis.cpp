@@ -174,26 +174,28 @@ void transpose_steps(size_t lows, size_t highs, const Low& low, const High& high
 
 }  // namespace
 
-Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const SeamTable* seams) {
+Pyramid<float> restore_transposed(std::vector<float> image, uint32_t columns, uint32_t rows, uint32_t steps,
+                                  const SeamTable* seams) {
     Pyramid<float> pyramid;
-    pyramid.columns = pyramid.rows = side;
-    pyramid.levels.resize(static_cast<size_t>(std::countr_zero(side - 1)));
-    for (size_t e = pyramid.levels.size(); e > 0; --e) {
-        const size_t lows = low_count(side), highs = high_count(side), width = size_t{side} * 3;
+    pyramid.columns = columns;
+    pyramid.rows = rows;
+    pyramid.levels.resize(steps);
+    for (size_t e = steps; e > 0; --e) {
+        const size_t lows = low_count(columns), highs = high_count(columns), width = size_t{columns} * 3;
         AnalysisLevel<float>& level = pyramid.levels[e - 1];
-        level.horizontal.resize(lows * highs * 3);
-        level.vertical.resize(highs * lows * 3);
-        level.diagonal.resize(highs * highs * 3);
-        std::vector<float> low_image(lows * lows * 3);
-        const OwnSharedRim own_rim(seams, side);
+        level.horizontal.resize(low_count(rows) * highs * 3);
+        level.vertical.resize(high_count(rows) * lows * 3);
+        level.diagonal.resize(high_count(rows) * highs * 3);
+        std::vector<float> low_image(low_count(rows) * lows * 3);
+        const OwnSharedRim own_rim(seams, columns);
         const SharedRim rim = own_rim.view();
         transpose_steps(
-            lows, highs, [&](size_t i) { return image.data() + 2 * i * width; },
+            low_count(rows), high_count(rows), [&](size_t i) { return image.data() + 2 * i * width; },
             [&](size_t i) { return image.data() + (2 * i + 1) * width; }, width, static_cast<bool>(rim),
             [&](size_t i) { return lifted_part(rim, static_cast<uint32_t>(2 * i), width); });
-        for (size_t r = 0; r < side; ++r) {
+        for (size_t r = 0; r < rows; ++r) {
             float* row = image.data() + r * width;
-            const KeepsOfRow keeps{rim, static_cast<uint32_t>(r), side};
+            const KeepsOfRow keeps{rim, static_cast<uint32_t>(r), rows};
             transpose_steps(
                 lows, highs, [&](size_t i) { return row + 6 * i; }, [&](size_t i) { return row + 6 * i + 3; }, 3,
                 keeps.ends(),
@@ -207,7 +209,8 @@ Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const
             if (r % 2 == 0) from_unit_gain(to_low, lows * 3);
         }
         image = std::move(low_image);
-        side = low_count(side);
+        columns = low_count(columns);
+        rows = low_count(rows);
     }
     pyramid.base = std::move(image);
     return pyramid;

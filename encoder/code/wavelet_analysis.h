@@ -49,8 +49,9 @@ template <class Wavelet>
 std::vector<typename Wavelet::Sample> restore(const Pyramid<typename Wavelet::Sample>& pyramid,
                                               const SeamTable* seams = nullptr);
 
-// The transpose of restore<Irreversible97> on a square, seen as a linear map from bands to images.
-Pyramid<float> restore_transposed(std::vector<float> image, uint32_t side, const SeamTable* seams = nullptr);
+// The transpose of restore<Irreversible97>, seen as a linear map from bands to images. Sizes are as in analyse().
+Pyramid<float> restore_transposed(std::vector<float> image, uint32_t columns, uint32_t rows, uint32_t steps,
+                                  const SeamTable* seams = nullptr);
 
 // The bands of levels[index].
 inline LevelBands bands_of(Pyramid<int32_t>& pyramid, uint32_t index) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "encoder/code/wavelet_analysis.h"
@@ -24,14 +25,39 @@ struct FitSetting {
     double front;  // the sign that makes the image face outwards
 };
 
+// An image in the coordinates of its files.
+struct CodedCoordinates {
+    std::shared_ptr<const ImageBasis> basis;
+    ImageBasis::Coordinates values;
+};
+
 class FitCodec {
   public:
+    // Keeps a reference to gluing.
+    explicit FitCodec(const GridGluing& gluing) : gluing_(gluing) {}
     virtual ~FitCodec() = default;
-    virtual std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const = 0;
+
+    // Returns coordinates of an image. Seams may be open in it: closed, it is the image.
+    virtual CodedCoordinates coordinates(const std::vector<float>& image, const DetailCoding& coding) = 0;
+    // Tells that the last coordinates were changed, so that what the image does not show of them follows.
+    virtual void follow(const ImageBasis::Coordinates&) {}
+    // Closes the seams of a synthesized image as decoders do, seen as a linear map, and its transpose. By default
+    // samples at one surface point go to their mean.
+    virtual void close(std::vector<float>& image) const { average_glued(image); }
+    virtual void close_transposed(std::vector<float>& image) const { average_glued(image); }
     // The samples that a decoder has of a file of the image, in the frame of the fit. mends_folds: as files do.
     virtual std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) = 0;
-    // Mends the folds that the quantizer leaves in the bands of a file. Layouts whose files have no such bands do nothing.
-    virtual void repair(Pyramid<int32_t>&, const Units&) {}
+    // Mends the folds that the quantizer leaves in the bands of a file, one pyramid for each part. Layouts whose files
+    // have no such bands do nothing.
+    virtual void repair(std::span<Pyramid<int32_t>>, const Units&) {}
+
+  protected:
+    const GridGluing& gluing() const { return gluing_; }
+    // Replaces the values of each class by their mean. image: interleaved triples.
+    void average_glued(std::vector<float>& image) const;
+
+  private:
+    const GridGluing& gluing_;
 };
 
 }  // namespace gim

@@ -3,8 +3,7 @@
 //
 //     E(P S y) + sum_i price(c_i) (c_i + y_i)^2
 //
-// E is the sampled distances, S the wavelet synthesis, P the mean over samples that are one surface point, and c the
-// current coordinates. Then the round steps as far as nothing folds over. The price is the quadratic that touches
+// E is the sampled distances, S the wavelet synthesis, P the closing of the seams, and c the current coordinates. Then the round steps as far as nothing folds over. The price is the quadratic that touches
 // bits(c) = kBits log2(1 + (c / (kNarrow step))^2) at c_i, times the worth of a bit: at high rates one more bit for
 // each coefficient of step q lowers the error of a sample, q^2 / 12, by 2 ln 2 of it.
 //
@@ -21,7 +20,6 @@
 #include "encoder/base/parallel.h"
 #include "encoder/fit/fitter.h"
 #include "encoder/fit/prices.h"
-#include "encoder/fit/square_codec.h"
 #include "encoder/surface/surface_samples.h"
 
 namespace gim {
@@ -81,22 +79,11 @@ void for_all(size_t count, const Body& body) {
     });
 }
 
-// Replaces the values of each class by their mean. image: interleaved triples.
-void average_glued(const GridGluing& gluing, std::vector<float>& image) {
-    for (const auto& members : gluing.shared) {
-        for (size_t k = 0; k < 3; ++k) {
-            float sum = 0;
-            for (const uint32_t v : members) sum += image[3 * size_t{v} + k];
-            for (const uint32_t v : members) image[3 * size_t{v} + k] = sum / static_cast<float>(members.size());
-        }
-    }
-}
-
 // The energy of one round as a function of coordinates: S, then P, then the matrix of the distances.
 class CoordinateSystem {
   public:
-    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const GridGluing& gluing)
-        : system_(system), basis_(basis), gluing_(gluing) {
+    CoordinateSystem(const FitSystem& system, const ImageBasis& basis, const FitCodec& codec)
+        : system_(system), basis_(basis), codec_(codec) {
         for (size_t k = 0; k < 3; ++k) {
             in_[k].resize(system.right.size());
             out_[k].resize(system.right.size());
@@ -105,7 +92,7 @@ class CoordinateSystem {
 
     std::vector<float> image_of(const Coordinates& y) const {
         std::vector<float> image = basis_.synthesize(y);
-        average_glued(gluing_, image);
+        codec_.close(image);
         return image;
     }
     // Returns the right side times `scale`.
@@ -129,13 +116,13 @@ class CoordinateSystem {
 
   private:
     Coordinates coordinates_of(std::vector<float> image) const {
-        average_glued(gluing_, image);
+        codec_.close_transposed(image);
         return basis_.transposed(std::move(image));
     }
 
     const FitSystem& system_;
     const ImageBasis& basis_;
-    const GridGluing& gluing_;
+    const FitCodec& codec_;
     Channels in_, out_;
 };
 
@@ -224,11 +211,11 @@ struct CodedFit::Impl {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
-        const std::unique_ptr<ImageBasis> basis = codec->basis(image, coding);
-        const Coordinates c = basis->analyse(image);
+        const auto [basis, c] = codec->coordinates(image, coding);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
-        CoordinateSystem coordinates(system, *basis, gluing);
+        CoordinateSystem coordinates(system, *basis, *codec);
         const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
+        codec->follow(y);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
         for (size_t i = 0; i < change.size(); ++i) step[i / 3][static_cast<int>(i % 3)] = double{unit * change[i]};
@@ -245,12 +232,6 @@ CodedFit::~CodedFit() = default;
 CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
-CodedFit::CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed)
-    : impl_(std::make_unique<Impl>(start, reference, seed, Rails{})) {
-    impl_->codec = std::make_unique<SquareCodec>(start.width(), seams, impl_->gluing, impl_->reference, impl_->frame,
-                                                 impl_->fitter.front());
-}
-
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
                    const Rails& rails)
     : impl_(std::make_unique<Impl>(start, reference, seed, rails)) {
@@ -259,7 +240,7 @@ CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, c
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
-void CodedFit::repair(Pyramid<int32_t>& bands, const Units& units) { impl_->codec->repair(bands, units); }
+void CodedFit::repair(std::span<Pyramid<int32_t>> bands, const Units& units) { impl_->codec->repair(bands, units); }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
     const Schedule schedule = schedule_of(effort);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "encoder/code/wavelet_analysis.h"
@@ -20,7 +21,6 @@
 #include "encoder/image/rails.h"
 #include "encoder/surface/mesh.h"
 #include "format/container.h"
-#include "format/seam.h"
 
 namespace gim {
 
@@ -29,10 +29,7 @@ using MakeFitCodec = std::function<std::unique_ptr<FitCodec>(const FitSetting& s
 
 class CodedFit {
   public:
-    // For a square. Copies its arguments. start: width and height are 2^j + 1. seams: of the file; mates share their
-    // details. `seed` decides where distances are sampled.
-    CodedFit(const GeometryImage& start, const SeamTable& seams, const Mesh& reference, uint64_t seed);
-    // For an image of any layout. Samples stay on their rails.
+    // Copies its arguments. `seed` decides where distances are sampled. Samples stay on their rails.
     CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
              const Rails& rails = {});
     ~CodedFit();
@@ -49,7 +46,7 @@ class CodedFit {
     // number of threads. Cost: 5, 29 or 9 rounds, each about 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
     // Repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
-    void repair(Pyramid<int32_t>& bands, const Units& units);
+    void repair(std::span<Pyramid<int32_t>> bands, const Units& units);
     // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();
 

@@ -28,8 +28,8 @@ void FoldRepair::repair(std::span<Pyramid<int32_t>> bands, const Units& units, c
     passes_.repair(image, effort);
 }
 
-std::vector<Vec3> FoldRepair::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
-    return positions_of(parts_.samples(parts_.decode(bands, units), units), units, frame_);
+std::vector<Vec3> FoldRepair::samples(const CodedImage::Levels& levels, const Units& units) const {
+    return positions_of(parts_.samples(levels, units), units, frame_);
 }
 
 }  // namespace gim

@@ -28,8 +28,12 @@ class FoldRepair {
     // bands: of each part; lossy. As FoldPasses::repair().
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units, const RepairEffort& effort);
 
-    // Returns the decoded samples with closed seams, in the frame.
-    std::vector<Vec3> decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const;
+    // Returns the images that a decoder has on its way, of each part, before it closes the seams.
+    CodedImage::Levels levels(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
+        return parts_.decode(bands, units);
+    }
+    // Returns the samples that a decoder makes of them with closed seams, in the frame.
+    std::vector<Vec3> samples(const CodedImage::Levels& levels, const Units& units) const;
 
   private:
     void make_responses();

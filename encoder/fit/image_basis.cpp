@@ -17,12 +17,14 @@ float relative_area_of(const DetailFrame& frame, float cell_area) {
 
 }  // namespace
 
-void ImageBasis::add_base(size_t triples, float step) {
-    base_size_ = 3 * triples;
-    frames_.assign(triples, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
-    steps_.assign(triples, step);
+void ImageBasis::add_base(size_t triples, float step, float norm) {
+    base_size_ += 3 * triples;
+    const size_t count = base_size_ / 3;
+    frames_.resize(count, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1});
+    steps_.resize(count, step);
     tangential_steps_ = steps_;  // unused for the base, which has no tangents
-    areas_.assign(triples, 1);
+    areas_.resize(count, 1);
+    norms_.resize(count, norm);
 }
 
 void ImageBasis::add_detail(const DetailFrame& frame, const DetailSteps& steps, Orientation orientation, float norm) {

@@ -41,8 +41,8 @@ class ImageBasis {
     enum class Way { kIntoFrames, kOutOfFrames };
     void turn(Coordinates& coordinates, Way way) const;
 
-    // Adds the triples of the base, all of one step; but not their norms.
-    void add_base(size_t triples, float step);
+    // Adds triples of the base, all of one step and norm. Call it before add_detail().
+    void add_base(size_t triples, float step, float norm);
     void add_detail(const DetailFrame& frame, const DetailSteps& steps, Orientation orientation, float norm);
 
     size_t base_size_ = 0;

@@ -4,17 +4,6 @@
 
 namespace gim {
 
-namespace {
-
-// Returns the sample of an image of this width that a part's sample is; kNone if it is not defined.
-uint32_t sample_of_part(const CodedPart& part, uint32_t width, uint32_t row, uint32_t column) {
-    if (!part.defined.empty() && !part.defined[size_t{row} * part.columns + column]) return kNone;
-    return static_cast<uint32_t>(part.row + static_cast<int32_t>(row)) * width +
-           static_cast<uint32_t>(part.column + static_cast<int32_t>(column));
-}
-
-}  // namespace
-
 CodedImage::Levels ImageParts::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
     CodedImage::Levels levels;
     for (size_t p = 0; p < parts.size(); ++p)
@@ -27,14 +16,10 @@ std::vector<float> ImageParts::samples(const CodedImage::Levels& levels, const U
     for (size_t p = 0; p < parts.size(); ++p) {
         const CodedPart& part = parts[p];
         const std::vector<float>& box = levels[p].back();
-        for (uint32_t row = 0, i = 0; row < part.rows; ++row) {
-            for (uint32_t column = 0; column < part.columns; ++column, ++i) {
-                const uint32_t to = sample_of_part(part, gluing.width, row, column);
-                if (to == kNone) continue;
-                for (size_t k = 0; k < 3; ++k)
-                    image[3 * size_t{to} + k] = box[3 * size_t{i} + k] + static_cast<float>(1 << (units.bits - 1));
-            }
-        }
+        part.for_each_defined(gluing.width, [&](size_t in_part, size_t in_image) {
+            for (size_t k = 0; k < 3; ++k)
+                image[3 * in_image + k] = box[3 * in_part + k] + static_cast<float>(1 << (units.bits - 1));
+        });
     }
     close(image);
     return image;
@@ -61,13 +46,7 @@ void PartsImage::find_owners() {
     owner_.assign(parts_.gluing.sample_count(), 0);
     if (parts_.parts.size() == 1) return;
     for (uint32_t p = 0; p < parts_.parts.size(); ++p) {
-        const CodedPart& part = parts_.parts[p];
-        for (uint32_t row = 0; row < part.rows; ++row) {
-            for (uint32_t column = 0; column < part.columns; ++column) {
-                const uint32_t v = sample_of_part(part, parts_.gluing.width, row, column);
-                if (v != kNone) owner_[v] = p;
-            }
-        }
+        parts_.parts[p].for_each_defined(parts_.gluing.width, [&](size_t, size_t v) { owner_[v] = p; });
     }
 }
 
@@ -119,7 +98,7 @@ void PartsImage::add_block(const CodedPart& part, const ResponseBlock& block) {
     const float* weight = block.weights;
     for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
         for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
-            const uint32_t v = sample_of_part(part, parts_.gluing.width, row, column);
+            const uint32_t v = part.in_image(parts_.gluing.width, row, column);
             if (v != kNone) moved_.push_back({v, *weight});
         }
     }

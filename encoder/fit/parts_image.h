@@ -10,19 +10,11 @@
 #include "encoder/code/detail_response.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/coded_image.h"
+#include "encoder/fit/coded_part.h"
 #include "encoder/image/gluing.h"
 #include "format/container.h"
-#include "format/seam.h"
 
 namespace gim {
-
-// A part of an image that is coded by itself: all of a square, or the box of a chart.
-struct CodedPart {
-    uint32_t columns = 0, rows = 0;
-    int32_t column = 0, row = 0;       // of its first sample, in the image; a box may begin outside
-    const SeamTable* seams = nullptr;  // of a square whose mates share their details
-    std::vector<uint8_t> defined;      // per sample; empty: all are
-};
 
 // Closes the seams of a whole image as the decoder does. image: interleaved triples, in units.
 using CloseSeams = std::function<void(std::vector<float>& image)>;

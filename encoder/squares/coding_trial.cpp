@@ -1,4 +1,5 @@
 #include "encoder/squares/coding_trial.h"
+#include "encoder/squares/square_codec.h"
 
 #include <cmath>
 
@@ -24,7 +25,7 @@ Result<CodingTrial::Coded> CodingTrial::coded(const SquareImage& image, double q
     parameters.units = units_of({&image, 1}, options_.bits);
     Units units = *parameters.units;
     units.quantizer = quantizer_in_range(quantizer);
-    CodedFit fit(image, file_seams(image), surface_.mesh(), options_.seed);
+    CodedFit fit(image, square_codec(image.side(), file_seams(image)), surface_.mesh(), options_.seed);
     SquareImage fitted = image;
     fitted.positions = fit.run(units, CodedFit::Effort::kSearch);
     GIM_TRY(bytes, write_squares({&fitted, 1}, parameters));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
+#include "encoder/squares/square_codec.h"
 #include "encoder/squares/square_texels.h"
 #include "encoder/squares/write_squares.h"
 #include "format/sideband_code.h"
@@ -57,7 +58,7 @@ class SquaresLayout final : public LayoutImages {
         with_units.units = units_;
         if (!is_rough_ && !fits_.empty()) {
             with_units.repair = [this](size_t first, std::span<Pyramid<int32_t>> bands, const Units& units) {
-                for (size_t i = 0; i < bands.size(); ++i) fits_[first + i].repair(bands[i], units);
+                for (size_t i = 0; i < bands.size(); ++i) fits_[first + i].repair(bands.subspan(i, 1), units);
             };
         }
         return squares_writer(squares_.images, with_units);
@@ -77,7 +78,8 @@ class SquaresLayout final : public LayoutImages {
   private:
     void make_fits(uint64_t seed) {
         for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
-            fits_.emplace_back(squares_.images[i], file_seams(squares_.images[i]), squares_.surfaces[i], seed);
+            const SquareImage& image = squares_.images[i];
+            fits_.emplace_back(image, square_codec(image.side(), file_seams(image)), squares_.surfaces[i], seed);
             squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }

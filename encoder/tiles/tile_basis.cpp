@@ -63,9 +63,10 @@ TileBasis::TileBasis(const std::vector<float>& image, const TilePlaces& places, 
         seen[places.samples[i]] = true;
     }
 
-    add_base(complex.vertices, tile_base_step(shape, coding.quantizer));
+    const float low_norm = tile_norms(shape, exponent_).low;
+    add_base(complex.vertices, tile_base_step(shape, coding.quantizer), low_norm);
     for (uint32_t v = 0; v < complex.vertices; ++v)
-        norms_.push_back(tile_norms(shape, exponent_).low * std::sqrt(static_cast<float>(complex.valence[v]) / 4));
+        norms_[v] = low_norm * std::sqrt(static_cast<float>(complex.valence[v]) / 4);
     is_copy_.assign(complex.vertices, false);
     // The frames are those of the small images, coarsest first.
     std::vector<std::vector<float>> samples(exponent_);

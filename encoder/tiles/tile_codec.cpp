@@ -21,7 +21,8 @@ TilePyramid<int32_t> quantized_grids(const QuadComplex& complex, const TileShape
 }  // namespace
 
 TileCodec::TileCodec(CodedComplex coded, TileTexels texels, const TileShape& shape, const FitSetting& setting)
-    : coded_(std::move(coded)),
+    : FitCodec(setting.gluing),
+      coded_(std::move(coded)),
       texels_(std::move(texels)),
       shape_(shape),
       frame_(setting.frame),
@@ -36,9 +37,10 @@ Result<std::unique_ptr<TileCodec>> TileCodec::make(const TileImage& tiles, const
     return std::unique_ptr<TileCodec>(new TileCodec(std::move(coded), std::move(texels), shape, setting));
 }
 
-std::unique_ptr<ImageBasis> TileCodec::basis(const std::vector<float>& image, const DetailCoding& coding) const {
-    return std::make_unique<TileBasis>(
+CodedCoordinates TileCodec::coordinates(const std::vector<float>& image, const DetailCoding& coding) {
+    const auto basis = std::make_shared<const TileBasis>(
         image, TilePlaces{coded_.complex.view(), texels_.of_sample, texels_.sample_at.size()}, shape_, coding);
+    return {basis, basis->analyse(image)};
 }
 
 TilePyramid<int32_t> TileCodec::quantized(const std::vector<float>& image, const Units& units) const {

@@ -23,7 +23,7 @@ class TileCodec final : public FitCodec {
     TileCodec(const TileCodec&) = delete;
     TileCodec& operator=(const TileCodec&) = delete;
 
-    std::unique_ptr<ImageBasis> basis(const std::vector<float>& image, const DetailCoding& coding) const override;
+    CodedCoordinates coordinates(const std::vector<float>& image, const DetailCoding& coding) override;
     std::vector<Vec3> decoded(const std::vector<float>& image, const Units& units, bool mends_folds) override;
     // Mends the folds that the quantizer leaves in the integers of a file of such an image (fold_passes.h).
     void repair(TilePyramid<int32_t>& pyramid, const Units& units, const RepairEffort& effort = kLastRepairOfTiles);

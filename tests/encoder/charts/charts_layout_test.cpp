@@ -114,6 +114,32 @@ TEST(EncodeCharts, RateTargetsAreMet) {
     EXPECT_GE(bytes.value().bytes.size(), 1700u);
 }
 
+TEST(EncodeCharts, AFitToTheCodecTakesFewerBytesForAnEqualError) {
+    const TriangleMesh mesh = corpus::corpus().named("tori-2").mesh();
+    EncodeOptions options = chart_options(6000);
+    options.rate = {RateTarget::Kind::kPsnr, 45};
+    options.fit = FitStrength::kStiff;
+    const auto plain = encode(mesh, options);
+    options.fit = FitStrength::kAuto;
+    const auto fitted = encode(mesh, options);
+    ASSERT_TRUE(plain.ok() && fitted.ok());
+    EXPECT_LT(double(fitted.value().bytes.size()), 0.8 * double(plain.value().bytes.size()));
+    expect_topology_at_every_level(fitted.value(), "fitted");
+}
+
+TEST(EncodeCharts, FewerSamplesAreTriedForATarget) {
+    const TriangleMesh mesh = corpus::corpus().named("tori-2").mesh();
+    EncodeOptions options = chart_options(20000);
+    options.rate = {RateTarget::Kind::kPsnr, 42};
+    const auto whole = encode(mesh, options);
+    options.try_smaller_sides = true;
+    const auto best = encode(mesh, options);
+    ASSERT_TRUE(whole.ok() && best.ok());
+    EXPECT_GE(best.value().report.error.psnr, 42);
+    EXPECT_LT(best.value().report.samples, 10001u);
+    EXPECT_LT(best.value().bytes.size(), whole.value().bytes.size());
+}
+
 TEST(EncodeCharts, TooFewSamplesAreRefusedWithWords) {
     const auto encoded = encode(corpus::corpus().named("plate-5").mesh(), chart_options(60));
     ASSERT_FALSE(encoded.ok());

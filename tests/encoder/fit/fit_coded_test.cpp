@@ -9,6 +9,7 @@
 #include "encoder/base/parallel.h"
 #include "encoder/code/decode_surface.h"
 #include "encoder/image/gluing.h"
+#include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/surface/closest_point.h"
 #include "encoder/surface/compare_meshes.h"
@@ -43,7 +44,7 @@ Units units_for(const SquareImage& image, double quantizer) {
 
 SquareImage fitted(const SquareImage& start, const Mesh& reference, const Units& units,
                    CodedFit::Effort effort = CodedFit::Effort::kFinal) {
-    CodedFit fit(start, file_seams(start), reference, 1);
+    CodedFit fit(start, square_codec(start.side(), file_seams(start)), reference, 1);
     SquareImage image = start;
     image.positions = fit.run(units, effort);
     return image;
@@ -117,7 +118,7 @@ TEST(FitCoded, ProgressRises) {
     const Mesh reference = bumpy_torus();
     const SquareImage start = image_on(reference);
     std::vector<double> heard;
-    (void)CodedFit(start, file_seams(start), reference, 1)
+    (void)CodedFit(start, square_codec(start.side(), file_seams(start)), reference, 1)
         .run(units_for(start, 16), CodedFit::Effort::kSearch, [&](Stage stage, double fraction) {
             EXPECT_EQ(stage, Stage::kFit);
             heard.push_back(fraction);

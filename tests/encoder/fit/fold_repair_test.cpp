@@ -270,7 +270,7 @@ TEST(FoldRepair, SeamsStayClosedAndADecoderSeesWhatTheRepairSees) {
     FoldRepair repair = repair_of(square);
     repair.repair({&bands, 1}, units, kLastRepair);
     expect_copies_untouched(square, bands);
-    const std::vector<Vec3> samples = repair.decode({&bands, 1}, units);
+    const std::vector<Vec3> samples = repair.samples(repair.levels({&bands, 1}, units), units);
     for (const auto& members : square.image.gluing.shared) {
         for (const uint32_t v : members) EXPECT_EQ(samples[v], samples[members[0]]);
     }
@@ -324,7 +324,7 @@ TEST(FoldRepair, ChartsAreRepairedTogether) {
         std::vector<Vec3> seen;
         parameters.repair = [&](size_t, std::span<Pyramid<int32_t>> bands, const Units& units) {
             repair.repair(bands, units, kLastRepair);
-            seen = repair.decode(bands, units);
+            seen = repair.samples(repair.levels(bands, units), units);
         };
         balance.add(before, outcome_of(charts_writer(charts, parameters).value().write(quantizer), mesh));
         for (const auto& members : charts.image.gluing.shared) {

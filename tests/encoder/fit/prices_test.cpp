@@ -6,7 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "encoder/fit/detail_basis.h"
+#include "encoder/fit/parts_basis.h"
+#include "tests/encoder/fit/square_basis.h"
 #include "tests/encoder/grid_images.h"
 
 namespace gim {
@@ -48,14 +49,15 @@ TEST(Prices, ScaleIsTheCurvatureOfTheDistances) {
     for (const Vec3& p : image.positions) {
         for (int k = 0; k < 3; ++k) units.push_back(static_cast<float>(p[k]));
     }
-    const DetailBasis basis(units, kSide, {8, true, 3, static_cast<float>(mean)});
+    const test::SquareBasis square(units, kSide, {8, true, 3, static_cast<float>(mean)});
+    const PartsBasis& basis = square.basis;
     // Details this large cost next to nothing.
-    const Prices prices(basis, DetailBasis::Coordinates(basis.size(), 1e4f), 8, Free::kAll);
+    const Prices prices(basis, PartsBasis::Coordinates(basis.size(), 1e4f), 8, Free::kAll);
     const size_t diagonal = basis.size() - 3 * 32 * 32;  // the finest band, the last one
     double least = 1e9, most = 0;
     for (size_t row = 2; row < 30; ++row) {
         const size_t i = diagonal + 3 * (32 * row + 7 + row % 16);
-        DetailBasis::Coordinates one(basis.size(), 0.0f);
+        PartsBasis::Coordinates one(basis.size(), 0.0f);
         one[i] = 1;
         const std::vector<float> moves = basis.synthesize(one);
         double curvature = 0;
@@ -73,8 +75,9 @@ TEST(Prices, LargerDetailsAndFinerStepsCostLess) {
     for (const Vec3& p : crowded_torus().positions) {
         for (int k = 0; k < 3; ++k) units.push_back(static_cast<float>(p[k]));
     }
-    const DetailBasis basis(units, kSide, {8, true, 3, 0});
-    const DetailBasis::Coordinates small(basis.size(), 1.0f), large(basis.size(), 50.0f);
+    const test::SquareBasis square(units, kSide, {8, true, 3, 0});
+    const PartsBasis& basis = square.basis;
+    const PartsBasis::Coordinates small(basis.size(), 1.0f), large(basis.size(), 50.0f);
     const Prices cheap(basis, large, 8, Free::kAll), dear(basis, small, 8, Free::kAll),
         fine(basis, large, 4, Free::kAll), held(basis, large, 8, Free::kNormals);
     for (size_t i = 0; i < basis.size(); ++i) {
