@@ -44,22 +44,43 @@ std::vector<EncodeOptions> size_variants(const EncodeOptions& options) {
     return {halved(options), options};
 }
 
+namespace {
+
+// Halves as long as that gives a better file.
+Result<Encoded> best_of_halves(const CodingRuns& runs, EncodeOptions options, Result<Encoded> best,
+                               bool may_end_early) {
+    const RateTarget rate = options.rate;
+    while (is_large(options)) {
+        options = halved(options);
+        auto half = runs.code(options, may_end_early ? contest_with(best) : Contest{});
+        if (!improves(half, best, rate)) break;
+        best = std::move(half);
+    }
+    return best;
+}
+
+// Brief fits of charts are too far from full ones to tell who is sure to lose. So each size is coded to its end, but the
+// largest one only if a quarter of it is not better than the half.
+Result<Encoded> best_of_samples(const CodingRuns& runs, const EncodeOptions& whole) {
+    EncodeOptions options = halved(whole);
+    auto best = runs.code(options, {});
+    const uint64_t of_half = best.ok() ? best.value().report.samples : 0;
+    best = best_of_halves(runs, options, std::move(best), false);
+    if (best.ok() && best.value().report.samples != of_half) return best;
+    auto of_whole = runs.code(whole, {});
+    return improves(of_whole, best, whole.rate) ? std::move(of_whole) : std::move(best);
+}
+
+}  // namespace
+
 Result<Encoded> best_of_sizes(const CodingRuns& runs, const EncodeOptions& whole) {
     if (!may_halve(whole)) return runs.code(whole, {});
+    if (whole.layout == Layout::kMcgim) return best_of_samples(runs, whole);
     EncodeOptions options = halved(whole);
     auto best = runs.code(options, {0, true});
     auto of_whole = runs.code(whole, contest_with(best));
-    if (!best.ok() || improves(of_whole, best, whole.rate)) {
-        best = std::move(of_whole);
-    } else {
-        while (is_large(options)) {
-            options = halved(options);
-            auto half = runs.code(options, contest_with(best));
-            if (!improves(half, best, whole.rate)) break;
-            best = std::move(half);
-        }
-    }
-    return best;
+    if (!best.ok() || improves(of_whole, best, whole.rate)) return of_whole;
+    return best_of_halves(runs, std::move(options), std::move(best), true);
 }
 
 }  // namespace gim
