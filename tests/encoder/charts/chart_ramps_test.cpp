@@ -5,27 +5,14 @@
 #include <cmath>
 #include <vector>
 
-#include "corpus/corpus.h"
 #include "encoder/charts/close_chart_seams.h"
-#include "encoder/charts/make_charts.h"
-#include "encoder/surface/clean.h"
+#include "tests/encoder/charts/corpus_charts.h"
 #include "tests/format/random_sideband.h"
 
 namespace gim {
 namespace {
 
-ChartLevels charts_of(const char* name) {
-    EncodeOptions options;
-    options.layout = Layout::kMcgim;
-    options.samples = 3000;
-    options.charts = 6;
-    options.fit = FitStrength::kOff;
-    options.density = false;
-    const Mesh mesh = clean(corpus::corpus().named(name).mesh()).value().mesh;
-    StageClock clock({});
-    EncodeReport report;
-    return make_charts(mesh, options, options.samples, clock, {}, report).value();
-}
+ChartLevels charts_of(const char* name) { return test::corpus_charts(name, 3000); }
 
 // Random triples where samples are defined, else 0.
 std::vector<float> noise(const ChartLevels& charts, uint64_t seed) {

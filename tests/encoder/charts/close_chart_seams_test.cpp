@@ -7,29 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "corpus/corpus.h"
-#include "encoder/charts/make_charts.h"
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/code_bands.h"
-#include "encoder/surface/clean.h"
 #include "format/chart_ramp.h"
 #include "gim/decoder.hpp"
+#include "tests/encoder/charts/corpus_charts.h"
 
 namespace gim {
 namespace {
 
-ChartLevels charts_of(const char* name) {
-    EncodeOptions options;
-    options.layout = Layout::kMcgim;
-    options.samples = 2000;
-    options.charts = 6;
-    options.fit = FitStrength::kOff;
-    options.density = false;
-    const Mesh mesh = clean(corpus::corpus().named(name).mesh()).value().mesh;
-    StageClock clock({});
-    EncodeReport report;
-    return make_charts(mesh, options, options.samples, clock, {}, report).value();
-}
+ChartLevels charts_of(const char* name) { return test::corpus_charts(name, 2000); }
 
 // A lossy file, and the bands that it holds.
 struct LossyCharts {
