@@ -104,7 +104,7 @@ case "${1:-}" in
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
     cross) test_cross && exit 0 ;;
-    web) (test_web) && exit 0 ;;
+    web) (test_web) || exit 1; exit 0 ;;
     *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross]" ;;
 esac
 
