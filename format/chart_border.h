@@ -4,8 +4,9 @@
 //
 // The paper stores a bitmask. A chart is a disk, so its border says as much: a closed walk in eight directions, coded
 // as changes of direction (after: Freeman. On the Encoding of Arbitrary Geometric Configurations. 1961). Triangles lie
-// on its left if columns run along x and rows along y. The walk is cut into paths. After it come the steps that zip
-// each path to its mate, if that was coded before.
+// on its left if columns run along x and rows along y. The walk is cut into paths. Each path follows the one of the next
+// coarser level, which tells where it is likely to turn. After the walk come the steps that zip each path to its mate, if
+// that was coded before.
 #pragma once
 
 #include <array>
@@ -29,8 +30,11 @@ inline constexpr std::array<std::array<int32_t, 2>, 8> kDirections{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 struct BorderModels {
-    std::array<std::array<BitModel, 4>, 45> turn;    // by the turns before
-    std::array<std::array<BitModel, 25>, 2> length;  // of paths without a known mate, and with one
+    std::array<std::array<BitModel, 4>, 45> turn;    // at the coarsest level: by the turns before
+    std::array<std::array<BitModel, 4>, 12> guided;  // at the others: by where the coarser border leads
+    std::array<std::array<BitModel, 25>, 4> length;  // at the coarsest level: of paths without a known mate, and with
+                                                     // one; at the others: likewise
+    std::array<BitModel, 25> start;                  // of the first sample, at the others
     std::array<std::array<BitModel, 15>, 2> zip;     // whether kBoth; else which of the other two
 };
 
@@ -40,6 +44,7 @@ struct BorderPath {
     uint32_t length = 0;      // samples from its begin node to its end node, the begin not counted
     uint32_t first = 0;       // index of its begin node in BorderChart::samples
     uint32_t chart = 0;
+    uint32_t coarse_length = 0, coarse_first = 0;  // the same at the next coarser level
 };
 
 // One chart's place in the arrays of its level.
@@ -48,6 +53,63 @@ struct BorderChart {
     uint32_t first_path = 0, path_count = 0;
     uint32_t border_length = 0;   // filled in by a decoder
     uint32_t* samples = nullptr;  // border samples in order, as row * columns + column; room for columns * rows of them
+    // The border of the next coarser level, in order, as row * coarse_columns + column. Null at the coarsest level.
+    const uint32_t* coarse = nullptr;
+    uint32_t coarse_columns = 0, coarse_border_length = 0;
+};
+
+// Where the border of the next coarser level leads. Follows one path from its begin node to its end node.
+class BorderGuide {
+  public:
+    static constexpr uint32_t kClasses = 12;
+
+    BorderGuide(const BorderChart& chart, const BorderPath& path) : chart_(chart), path_(path) {}
+
+    // Returns the class of the angle from the direction of the last step to where the coarser border goes on, seen from
+    // a sample of this level.
+    uint32_t look(uint32_t column, uint32_t row, uint32_t direction) {
+        while (at_ < path_.coarse_length && distance(at_ + 1, column, row) <= distance(at_, column, row)) ++at_;
+        const auto [x, y] = offset(at_ < path_.coarse_length ? at_ + 1 : at_, column, row);
+        const auto [dx, dy] = kDirections[direction];
+        return angle_class(dx * x + dy * y, dx * y - dy * x);
+    }
+
+  private:
+    // Quarters of a right angle: 5 straight ahead, 1 .. 4 to the right, 6 .. 9 to the left. 0 and 10 are backwards, 11
+    // is no direction.
+    static uint32_t angle_class(int64_t ahead, int64_t left) {
+        if (ahead == 0 && left == 0) return 11;
+        const int64_t side = left < 0 ? -left : left;
+        uint32_t size = 5;
+        if (5 * side < ahead) {
+            size = 0;
+        } else if (3 * side < 2 * ahead) {
+            size = 1;
+        } else if (2 * side < 3 * ahead) {
+            size = 2;
+        } else if (side < 5 * ahead) {
+            size = 3;
+        } else if (side > -5 * ahead) {
+            size = 4;
+        }
+        return left < 0 ? 5 - size : 5 + size;
+    }
+    // From a sample of this level to sample k of the coarser path.
+    std::array<int64_t, 2> offset(uint32_t k, uint32_t column, uint32_t row) const {
+        uint32_t i = path_.coarse_first + k;
+        if (i >= chart_.coarse_border_length) i -= chart_.coarse_border_length;
+        const uint32_t sample = chart_.coarse[i];
+        return {2 * int64_t{sample % chart_.coarse_columns} - column,
+                2 * int64_t{sample / chart_.coarse_columns} - row};
+    }
+    int64_t distance(uint32_t k, uint32_t column, uint32_t row) const {
+        const auto [x, y] = offset(k, column, row);
+        return x * x + y * y;
+    }
+
+    const BorderChart& chart_;
+    const BorderPath& path_;
+    uint32_t at_ = 0;  // the sample of the coarser path that is near
 };
 
 // Coder: as for BandCoder. An encoder brings charts and paths, a decoder fills them in. The functions return false on
@@ -66,9 +128,12 @@ class BorderCoder {
     bool code_zipper(const BorderPath& first, const BorderPath& second, const Known& known, const Glue& glue);
 
   private:
-    bool code_length(BorderPath& path, const BorderPath* paths, uint32_t number);
+    bool code_start(const BorderChart& chart, uint32_t* column, uint32_t* row);
+    bool code_length(BorderPath& path, const BorderPath* paths, uint32_t number, bool is_guided);
+    bool code_difference(std::array<BitModel, 25>& models, int64_t* difference);
     bool code_number(std::array<BitModel, 25>& models, uint32_t* value);
-    int32_t code_turn(int32_t known);
+    int32_t code_turn(std::array<BitModel, 4>& models, int32_t known);
+    std::array<BitModel, 4>& models_by_turns();
 
     Coder& coder_;
     BorderModels& models_;
@@ -90,33 +155,37 @@ bool BorderCoder<Coder>::code_number(std::array<BitModel, 25>& models, uint32_t*
     return true;
 }
 
+// Codes a difference: 0, 1, -1, 2, -2 .. as 0, 1, 2, 3, 4 ..
 template <class Coder>
-bool BorderCoder<Coder>::code_length(BorderPath& path, const BorderPath* paths, uint32_t number) {
-    if (path.mate < number) {
-        // Codes the difference to the mate's length: 0, 1, -1, 2, -2 .. as 0, 1, 2, 3, 4 ..
-        const auto expected = static_cast<int32_t>(paths[path.mate].length);
-        const int32_t difference = static_cast<int32_t>(path.length) - expected;
-        uint32_t coded =
-            difference > 0 ? 2 * static_cast<uint32_t>(difference) - 1 : 2 * static_cast<uint32_t>(-difference);
-        if (!code_number(models_.length[1], &coded)) return false;
-        const auto half = static_cast<int32_t>((coded + 1) / 2);
-        const int32_t length = expected + (coded & 1 ? half : -half);
-        if (length < 1) return false;
-        path.length = static_cast<uint32_t>(length);
+bool BorderCoder<Coder>::code_difference(std::array<BitModel, 25>& models, int64_t* difference) {
+    const int64_t size = *difference < 0 ? -*difference : *difference;
+    auto coded = static_cast<uint32_t>(*difference > 0 ? 2 * size - 1 : 2 * size);
+    if (!code_number(models, &coded)) return false;
+    const int64_t half = (int64_t{coded} + 1) / 2;
+    *difference = coded % 2 != 0 ? half : -half;
+    return true;
+}
+
+template <class Coder>
+bool BorderCoder<Coder>::code_length(BorderPath& path, const BorderPath* paths, uint32_t number, bool is_guided) {
+    const bool has_first = path.mate < number;
+    if (!is_guided && !has_first) {
+        uint32_t coded = path.length - 1;
+        if (!code_number(models_.length[0], &coded)) return false;
+        path.length = coded + 1;
         return true;
     }
-    uint32_t coded = path.length - 1;
-    if (!code_number(models_.length[0], &coded)) return false;
-    path.length = coded + 1;
+    const int64_t expected = is_guided ? 2 * int64_t{path.coarse_length} : int64_t{paths[path.mate].length};
+    int64_t difference = int64_t{path.length} - expected;
+    if (!code_difference(models_.length[(is_guided ? 2u : 0u) + (has_first ? 1u : 0u)], &difference)) return false;
+    if (expected + difference < 1) return false;
+    path.length = static_cast<uint32_t>(expected + difference);
     return true;
 }
 
 // Codes a turn of -3 .. 3 eighths of a full turn.
 template <class Coder>
-int32_t BorderCoder<Coder>::code_turn(int32_t known) {
-    const auto sign = [](int32_t t) { return t > 0 ? 2u : t < 0 ? 0u : 1u; };
-    const uint32_t last = turns_[0] > 1 ? 4u : turns_[0] < -1 ? 3u : sign(turns_[0]);
-    auto& models = models_.turn[(last * 3 + sign(turns_[1])) * 3 + sign(turns_[2])];
+int32_t BorderCoder<Coder>::code_turn(std::array<BitModel, 4>& models, int32_t known) {
     int32_t turn = 0;
     if (coder_.code_bit(models[0], known != 0)) {
         const bool right = coder_.code_bit(models[1], known < 0);
@@ -129,16 +198,38 @@ int32_t BorderCoder<Coder>::code_turn(int32_t known) {
     return turn;
 }
 
+// The models of a turn without a guide.
+template <class Coder>
+std::array<BitModel, 4>& BorderCoder<Coder>::models_by_turns() {
+    const auto sign = [](int32_t t) { return t > 0 ? 2u : t < 0 ? 0u : 1u; };
+    const uint32_t last = turns_[0] > 1 ? 4u : turns_[0] < -1 ? 3u : sign(turns_[0]);
+    return models_.turn[(last * 3 + sign(turns_[1])) * 3 + sign(turns_[2])];
+}
+
+// Codes the first sample of a chart's border.
+template <class Coder>
+bool BorderCoder<Coder>::code_start(const BorderChart& chart, uint32_t* column, uint32_t* row) {
+    if (!chart.coarse) {
+        *column = coder_.code_raw(*column, static_cast<uint32_t>(std::bit_width(chart.columns - 1)));
+        *row = coder_.code_raw(*row, static_cast<uint32_t>(std::bit_width(chart.rows - 1)));
+    } else {
+        const int64_t near_column = 2 * int64_t{chart.coarse[0] % chart.coarse_columns},
+                      near_row = 2 * int64_t{chart.coarse[0] / chart.coarse_columns};
+        int64_t right = *column - near_column, down = *row - near_row;
+        if (!code_difference(models_.start, &right) || !code_difference(models_.start, &down)) return false;
+        if (near_column + right < 0 || near_row + down < 0) return false;
+        *column = static_cast<uint32_t>(near_column + right);
+        *row = static_cast<uint32_t>(near_row + down);
+    }
+    return *column < chart.columns && *row < chart.rows;
+}
+
 template <class Coder>
 bool BorderCoder<Coder>::code_border(BorderChart& chart, BorderPath* paths) {
     const uint32_t start = chart.samples[0];
-    const uint32_t column_bits = static_cast<uint32_t>(std::bit_width(chart.columns - 1)),
-                   row_bits = static_cast<uint32_t>(std::bit_width(chart.rows - 1));
     uint32_t column = 0, row = 0;
     if constexpr (Coder::kWrites) column = start % chart.columns, row = start / chart.columns;
-    column = coder_.code_raw(column, column_bits);
-    row = coder_.code_raw(row, row_bits);
-    if (column >= chart.columns || row >= chart.rows) return false;
+    if (!code_start(chart, &column, &row)) return false;
     chart.samples[0] = row * chart.columns + column;
     turns_ = {};
 
@@ -147,7 +238,8 @@ bool BorderCoder<Coder>::code_border(BorderChart& chart, BorderPath* paths) {
     for (uint32_t p = chart.first_path; p < chart.first_path + chart.path_count; ++p) {
         BorderPath& path = paths[p];
         path.first = done;
-        if (!code_length(path, paths, p) || path.length > capacity - done) return false;
+        if (!code_length(path, paths, p, chart.coarse != nullptr) || path.length > capacity - done) return false;
+        BorderGuide guide(chart, path);
         for (uint32_t k = 0; k < path.length; ++k) {
             uint32_t wanted = 0;  // direction
             if constexpr (Coder::kWrites) {
@@ -160,7 +252,8 @@ bool BorderCoder<Coder>::code_border(BorderChart& chart, BorderPath* paths) {
                 direction = coder_.code_raw(wanted, 3);
             } else {
                 const auto known = static_cast<int32_t>((wanted - direction + 3) & 7) - 3;
-                direction = (direction + static_cast<uint32_t>(code_turn(known))) & 7;
+                auto& models = chart.coarse ? models_.guided[guide.look(column, row, direction)] : models_by_turns();
+                direction = (direction + static_cast<uint32_t>(code_turn(models, known))) & 7;
             }
             const uint32_t to_column = column + static_cast<uint32_t>(kDirections[direction][0]),
                            to_row = row + static_cast<uint32_t>(kDirections[direction][1]);

@@ -104,7 +104,7 @@ Status decode_levels(const Header& header, std::span<const uint8_t> file, const 
         if (Status s = find_level_chunk(header, l, &chunk, &offset); s != Status::kOk) return s;
         if (Status s = read_payload(file, chunk, offset, &payload); s != Status::kOk) return s;
         RangeDecoder decoder(payload);
-        if (!read_borders(shape, ws, l, decoder)) return Status::kMalformed;
+        if (!read_borders(shape, ws, l, l + 1 == header.level_count, decoder)) return Status::kMalformed;
         size_t low_first = 0;
         for (uint32_t c = 0; c < shape.chart_count; ++c) {
             const DecodedChart& chart = ws.charts[c];
@@ -195,7 +195,7 @@ Status decode_charts(const Header& header, std::span<const uint8_t> file, const 
         layout.place(&chart);
         for (uint32_t k = 0; k < chart.border.path_count; ++k) {
             const uint32_t p = chart.border.first_path + k;
-            new (&ws.paths[p]) BorderPath{ws.mates[p], 0, 0, c};
+            new (&ws.paths[p]) BorderPath{ws.mates[p], 0, 0, c, 0, 0};
         }
     }
     if (Status s = decode_levels(header, file, shape, ws); s != Status::kOk) return s;

@@ -9,6 +9,7 @@ struct BorderReader {
     const ChartLevelShape& shape;
     const ChartWorkspace& ws;
     bool glue;
+    bool follows;  // a coarser level, which was read before
 
     bool read(RangeDecoder& decoder, uint32_t shift) {
         BorderCoder<RangeDecoder> coder(&decoder, ws.border_models);
@@ -18,7 +19,9 @@ struct BorderReader {
             border.columns = halved(chart.columns, shift);
             border.rows = halved(chart.rows, shift);
             border.samples = ws.border + chart.first;
+            if (follows) keep_coarse(chart, shift, border);
             if (!coder.code_border(border, ws.paths)) return false;
+            chart.border.border_length = border.border_length;
             if (glue) {
                 chart.border = border;
                 if (!mark(chart)) return false;
@@ -32,6 +35,18 @@ struct BorderReader {
     }
 
   private:
+    // Moves the border of the coarser level out of the way. It guides the one that is read next.
+    void keep_coarse(const DecodedChart& chart, uint32_t shift, BorderChart& border) const {
+        uint32_t* coarse = ws.queue + chart.first;
+        border.coarse_border_length = chart.border.border_length;
+        border.coarse_columns = halved(chart.columns, shift + 1);
+        std::copy_n(border.samples, border.coarse_border_length, coarse);
+        border.coarse = coarse;
+        for (uint32_t p = border.first_path; p < border.first_path + border.path_count; ++p) {
+            ws.paths[p].coarse_length = ws.paths[p].length;
+            ws.paths[p].coarse_first = ws.paths[p].first;
+        }
+    }
     bool read_zipper(BorderCoder<RangeDecoder>& coder, uint32_t p) {
         const BorderPath &first = ws.paths[ws.paths[p].mate], &second = ws.paths[p];
         const auto none = [] { return ZipStep::kBoth; };
@@ -84,9 +99,9 @@ struct BorderReader {
 
 }  // namespace
 
-bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level,
+bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, bool is_coarsest,
                   RangeDecoder& decoder) {
-    BorderReader reader{shape, ws, stream_level == shape.level};
+    BorderReader reader{shape, ws, stream_level == shape.level, !is_coarsest};
     return reader.read(decoder, stream_level - shape.level);
 }
 

@@ -6,10 +6,12 @@
 
 namespace gim {
 
-// Reads the borders and zippers of stream_level. If that is the requested level, also fills ws.depth and makes ws.point
+// Reads the borders and zippers of stream_level. Those of the coarser levels were read before, unless it is the coarsest
+// one. If that is the requested level, also fills ws.depth and makes ws.point
 // a forest over flat samples in which parents come before their children. Returns false on borders that no encoder
 // writes.
-bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, RangeDecoder& decoder);
+bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, bool is_coarsest,
+                  RangeDecoder& decoder);
 
 // Turns the forest into vertex numbers, by first appearance. Returns how many there are.
 uint32_t number_points(const ChartLevelShape& shape, const ChartWorkspace& ws);

@@ -73,11 +73,26 @@ Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_
     return pyramid;
 }
 
-// Writes borders and zippers of one level.
+// Tells a chart what its border was at the next coarser level.
+void follow(const LevelBorders& coarser, size_t c, uint32_t columns, BorderChart& chart,
+            std::vector<BorderPath>& paths) {
+    chart.coarse = coarser.loops[c].data();
+    chart.coarse_columns = columns;
+    chart.coarse_border_length = static_cast<uint32_t>(coarser.loops[c].size());
+    uint32_t first = 0;
+    for (uint32_t p = chart.first_path; p < chart.first_path + chart.path_count; ++p) {
+        paths[p].coarse_length = coarser.lengths[p];
+        paths[p].coarse_first = first;
+        first += coarser.lengths[p];
+    }
+}
+
+// Writes borders and zippers of one level. coarser: those of the next one, or null.
 void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector<ChartBox>& charts,
-                  const std::vector<uint32_t>& mates, LevelBorders borders, uint32_t level) {
+                  const std::vector<uint32_t>& mates, LevelBorders borders, const LevelBorders* coarser,
+                  uint32_t level) {
     std::vector<BorderPath> paths(mates.size());
-    for (size_t p = 0; p < paths.size(); ++p) paths[p] = {mates[p], borders.lengths[p], 0, 0};
+    for (size_t p = 0; p < paths.size(); ++p) paths[p] = {mates[p], borders.lengths[p], 0, 0, 0, 0};
     std::vector<size_t> zipper_of(mates.size(), 0);  // of the path with the lower number
     for (size_t p = 0, next = 0; p < mates.size(); ++p) {
         if (mates[p] != kNoMate && mates[p] > p) zipper_of[p] = next++;
@@ -93,6 +108,7 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
         chart.border_length = static_cast<uint32_t>(borders.loops[c].size());
         borders.loops[c].resize(size_t{chart.columns} * chart.rows);
         chart.samples = borders.loops[c].data();
+        if (coarser) follow(*coarser, c, halved(chart.columns, 1), chart, paths);
         (void)coder.code_border(chart, paths.data());
         for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
             if (mates[p] >= p) continue;
@@ -175,7 +191,8 @@ std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) 
     std::vector<std::vector<uint8_t>> levels;
     for (uint32_t level = header.level_count; level-- > 0;) {
         RangeEncoder encoder;
-        code_borders(encoder, border_models, charts_, mates_, borders_[level], level);
+        const LevelBorders* coarser = level + 1 < header.level_count ? &borders_[level + 1] : nullptr;
+        code_borders(encoder, border_models, charts_, mates_, borders_[level], coarser, level);
         for (Pyramid<int32_t>& chart : bands) {
             BandCoder<RangeEncoder> coder(&encoder, &models, work.view());
             const uint32_t done = level + 1 == header.level_count ? 0 : chart.steps() - level - 1;

@@ -78,6 +78,24 @@ class RawBorderWriter {
         coder_.code_raw(row, static_cast<uint32_t>(std::bit_width(rows - 1)));
         turns_ = {};
         first_ = true;
+        guide_.clear();
+    }
+    // At a finer level. coarse: columns and rows of the chart's border at the next coarser level, sample after sample.
+    void begin_guided_chart(uint32_t column, uint32_t row, std::vector<std::array<int64_t, 2>> coarse) {
+        guide_ = std::move(coarse);
+        difference(start_, int64_t{column} - 2 * guide_[0][0]);
+        difference(start_, int64_t{row} - 2 * guide_[0][1]);
+        column_ = column;
+        row_ = row;
+        first_ = true;
+        guide_begin_ = guide_end_ = 0;
+    }
+    // The next path, which has coarse_length steps at the coarser level. is_second: its mate came before it.
+    void guided_length(uint32_t length, uint32_t coarse_length, bool is_second) {
+        difference(length_[is_second ? 3 : 2], int64_t{length} - 2 * int64_t{coarse_length});
+        guide_begin_ = guide_end_;
+        guide_end_ += coarse_length;
+        guide_at_ = guide_begin_;
     }
     void length(uint32_t length) { number(length_[0], length - 1); }
     void length_of_second(uint32_t length, uint32_t first_length) {
@@ -92,10 +110,13 @@ class RawBorderWriter {
             if (first_) {
                 coder_.code_raw(direction, 3);
             } else {
-                turn(static_cast<int32_t>((direction - direction_ + 3) & 7) - 3);
+                const auto t = static_cast<int32_t>((direction - direction_ + 3) & 7) - 3;
+                turn(guide_.empty() ? models_after(t) : guided_[guide_class()], t);
             }
             first_ = false;
             direction_ = direction;
+            column_ += kStep[direction][0];
+            row_ += kStep[direction][1];
         }
     }
     // A step of 11.3 per digit, including those that are not coded.
@@ -126,11 +147,35 @@ class RawBorderWriter {
         coder_.code_bit(models[width], 0);
         if (width > 0) coder_.code_raw(n + 1 - (1u << width), width);
     }
-    void turn(int32_t t) {
+    static constexpr std::array<std::array<int64_t, 2>, 8> kStep{
+        {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+
+    void difference(std::array<BitModel, 25>& models, int64_t d) {
+        number(models, static_cast<uint32_t>(d > 0 ? 2 * d - 1 : -2 * d));
+    }
+    std::array<int64_t, 2> to_guide(size_t k) const {
+        const auto& p = guide_[k % guide_.size()];
+        return {2 * p[0] - column_, 2 * p[1] - row_};
+    }
+    size_t guide_class() {
+        const auto far = [&](size_t k) { return to_guide(k)[0] * to_guide(k)[0] + to_guide(k)[1] * to_guide(k)[1]; };
+        while (guide_at_ < guide_end_ && far(guide_at_ + 1) <= far(guide_at_)) ++guide_at_;
+        const auto v = to_guide(std::min<size_t>(guide_at_ + 1, guide_end_));
+        const auto& d = kStep[direction_];
+        const int64_t f = d[0] * v[0] + d[1] * v[1], s = d[0] * v[1] - d[1] * v[0], a = s < 0 ? -s : s;
+        if (f == 0 && s == 0) return 11;
+        const int k = 5 * a < f ? 0 : 3 * a < 2 * f ? 1 : 2 * a < 3 * f ? 2 : a < 5 * f ? 3 : a > -5 * f ? 4 : 5;
+        return static_cast<size_t>(s < 0 ? 5 - k : 5 + k);
+    }
+    // Models by the turns before this one.
+    std::array<BitModel, 4>& models_after(int32_t t) {
         const auto sign = [](int32_t x) { return x < 0 ? 0u : x == 0 ? 1u : 2u; };
         const uint32_t q = turns_[0] > 1 ? 4 : turns_[0] < -1 ? 3 : sign(turns_[0]);
         auto& models = turn_[(q * 3 + sign(turns_[1])) * 3 + sign(turns_[2])];
         turns_ = {t, turns_[0], turns_[1]};
+        return models;
+    }
+    void turn(std::array<BitModel, 4>& models, int32_t t) {
         coder_.code_bit(models[0], t != 0);
         if (t == 0) return;
         coder_.code_bit(models[1], t < 0);
@@ -143,11 +188,16 @@ class RawBorderWriter {
 
     RangeEncoder& coder_;
     std::array<std::array<BitModel, 4>, 45> turn_;
-    std::array<std::array<BitModel, 25>, 2> length_;
+    std::array<std::array<BitModel, 4>, 12> guided_;
+    std::array<std::array<BitModel, 25>, 4> length_;
+    std::array<BitModel, 25> start_;
     std::array<std::array<BitModel, 15>, 2> zip_;
     std::array<int32_t, 3> turns_{};
     uint32_t direction_ = 0;
     bool first_ = true;
+    std::vector<std::array<int64_t, 2>> guide_;  // empty at the coarsest level
+    size_t guide_begin_ = 0, guide_end_ = 0, guide_at_ = 0;
+    int64_t column_ = 0, row_ = 0;
 };
 
 }  // namespace gim::test

@@ -37,29 +37,44 @@ void read_charts(std::span<const uint8_t> bytes, uint32_t width, uint32_t height
         if (mates[p] != kNoMate && (mates[p] >= paths.size() || mates[mates[p]] != p)) __builtin_trap();
         paths[p].mate = mates[p];
     }
+    // The coarsest level, and a finer one that it guides.
     RangeDecoder decoder(bytes);
     BorderModels models;
     BorderCoder<RangeDecoder> coder(&decoder, &models);
-    uint32_t path = 0;
-    for (const ChartBox& chart : charts) {
-        BorderChart border;
-        border.columns = chart.columns;
-        border.rows = chart.rows;
-        border.first_path = path;
-        border.path_count = chart.path_count;
-        std::vector<uint32_t> samples(size_t{chart.columns} * chart.rows);
-        border.samples = samples.data();
-        if (!coder.code_border(border, paths.data())) return;
-        for (uint32_t k = 0; k < border.border_length && k < samples.size(); ++k)
-            if (samples[k] >= samples.size()) __builtin_trap();
-        for (const uint32_t end = path + chart.path_count; path < end; ++path) {
-            if (mates[path] >= path) continue;
-            const BorderPath &first = paths[mates[path]], &second = paths[path];
-            (void)coder.code_zipper(
-                first, second, [] { return ZipStep::kBoth; },
-                [&](uint32_t i, uint32_t j) {
-                    if (i > first.length || j > second.length) __builtin_trap();
-                });
+    std::vector<std::vector<uint32_t>> coarse;
+    for (const uint32_t finer : {0u, 1u}) {
+        uint32_t path = 0;
+        for (size_t c = 0; c < charts.size(); ++c) {
+            BorderChart border;
+            border.columns = finer ? 2 * charts[c].columns - 1 : charts[c].columns;
+            border.rows = finer ? 2 * charts[c].rows - 1 : charts[c].rows;
+            border.first_path = path;
+            border.path_count = charts[c].path_count;
+            std::vector<uint32_t> samples(size_t{border.columns} * border.rows);
+            border.samples = samples.data();
+            if (finer) {
+                border.coarse = coarse[c].data();
+                border.coarse_columns = charts[c].columns;
+                border.coarse_border_length = static_cast<uint32_t>(coarse[c].size());
+                for (uint32_t p = path; p < path + border.path_count; ++p) {
+                    paths[p].coarse_length = paths[p].length;
+                    paths[p].coarse_first = paths[p].first;
+                }
+            }
+            if (!coder.code_border(border, paths.data())) return;
+            for (uint32_t k = 0; k < border.border_length && k < samples.size(); ++k)
+                if (samples[k] >= samples.size()) __builtin_trap();
+            samples.resize(std::min<size_t>(border.border_length, samples.size()));
+            if (!finer) coarse.push_back(samples);
+            for (const uint32_t end = path + border.path_count; path < end; ++path) {
+                if (mates[path] >= path) continue;
+                const BorderPath &first = paths[mates[path]], &second = paths[path];
+                (void)coder.code_zipper(
+                    first, second, [] { return ZipStep::kBoth; },
+                    [&](uint32_t i, uint32_t j) {
+                        if (i > first.length || j > second.length) __builtin_trap();
+                    });
+            }
         }
     }
 }

@@ -73,23 +73,27 @@ struct Level {
     std::vector<std::vector<ZipStep>> zippers;
 };
 
-Level random_level(Random& random) {
+// like: has the numbers of charts and paths, and the mates, if it is not null.
+Level random_level(Random& random, const Level* like = nullptr) {
     Level level;
-    const uint32_t charts = 1 + random.below(5);
+    const size_t charts = like ? like->walks.size() : 1 + random.below(5);
     for (uint32_t c = 0; c < charts; ++c) {
-        level.walks.push_back(random_walk(random));
+        Walk walk = random_walk(random);
+        while (like && walk.samples.size() < like->path_counts[c]) walk = random_walk(random);
+        level.walks.push_back(std::move(walk));
         const auto length = static_cast<uint32_t>(level.walks[c].samples.size());
-        const uint32_t count = 1 + random.below(std::min(length, 5u));
+        const uint32_t count = like ? like->path_counts[c] : 1 + random.below(std::min(length, 5u));
         level.path_counts.push_back(count);
         uint32_t left = length;
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t most = left - (count - 1 - k);
             const uint32_t n = k + 1 == count ? left : 1 + random.below(most);
-            level.paths.push_back({kNoMate, n, 0, c});
+            level.paths.push_back({kNoMate, n, 0, c, 0, 0});
             left -= n;
         }
     }
-    for (uint32_t p = 0; p < level.paths.size(); ++p) {
+    for (uint32_t p = 0; like && p < level.paths.size(); ++p) level.paths[p].mate = like->paths[p].mate;
+    for (uint32_t p = 0; !like && p < level.paths.size(); ++p) {
         const uint32_t q = random.below(static_cast<uint32_t>(level.paths.size()));
         if (q >= p || level.paths[p].mate != kNoMate || level.paths[q].mate != kNoMate) continue;
         level.paths[p].mate = q;
@@ -112,9 +116,10 @@ Level random_level(Random& random) {
     return level;
 }
 
-// Runs either direction. A decoder fills in the level, and `glued` from its zippers. Returns false on bad bytes.
+// Runs either direction. A decoder fills in the level, and `glued` from its zippers. Returns false on bad bytes. coarse:
+// the next coarser level, or null.
 template <class Coder>
-bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
+bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued, const Level* coarse = nullptr) {
     BorderCoder<Coder> border_coder(&coder, &models);
     uint32_t first_path = 0;
     size_t zipper = 0;
@@ -130,6 +135,17 @@ bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
         std::vector<uint32_t> samples(size_t{walk.columns} * walk.rows);
         std::copy_n(walk.samples.begin(), std::min(walk.samples.size(), samples.size()), samples.begin());
         chart.samples = samples.data();
+        if (coarse) {
+            chart.coarse = coarse->walks[c].samples.data();
+            chart.coarse_columns = coarse->walks[c].columns;
+            chart.coarse_border_length = static_cast<uint32_t>(coarse->walks[c].samples.size());
+            for (uint32_t k = 0, first = 0; k < chart.path_count; ++k) {
+                const uint32_t length = coarse->paths[first_path + k].length;
+                level.paths[first_path + k].coarse_length = length;
+                level.paths[first_path + k].coarse_first = first;
+                first += length;
+            }
+        }
         if (!border_coder.code_border(chart, level.paths.data())) return false;
         walk.samples.assign(samples.begin(), samples.begin() + std::min<size_t>(chart.border_length, samples.size()));
         for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
@@ -152,101 +168,189 @@ bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued) {
 // What a decoder knows before it reads borders.
 Level without_borders(Level level) {
     for (Walk& walk : level.walks) walk.samples.clear();
-    for (BorderPath& path : level.paths) path = {path.mate, 0, 0, path.chart};
+    for (BorderPath& path : level.paths) path = {path.mate, 0, 0, path.chart, 0, 0};
     return level;
 }
 
-Bytes encoded(Level level, Glued* glued) {
-    RangeEncoder encoder;
+// The same borders with two steps for each one. Zippers go on along both sides wherever they can.
+Level doubled(const Level& level) {
+    Level twice = level;
+    for (Walk& walk : twice.walks) {
+        const std::vector<uint32_t> samples = std::move(walk.samples);
+        const uint32_t columns = walk.columns;
+        walk.columns = 2 * columns - 1;
+        walk.rows = 2 * walk.rows - 1;
+        walk.samples.clear();
+        for (size_t k = 0; k < samples.size(); ++k) {
+            const uint32_t a = samples[k], b = samples[(k + 1) % samples.size()];
+            walk.samples.push_back(2 * (a / columns) * walk.columns + 2 * (a % columns));
+            walk.samples.push_back((a / columns + b / columns) * walk.columns + a % columns + b % columns);
+        }
+        std::string directions;
+        for (const char d : walk.directions) directions += {d, d};
+        walk.directions = directions;
+    }
+    for (BorderPath& path : twice.paths) path.length *= 2;
+    size_t zipper = 0;
+    for (uint32_t p = 0; p < twice.paths.size(); ++p) {
+        if (twice.paths[p].mate >= p) continue;
+        const uint32_t a = twice.paths[twice.paths[p].mate].length, b = twice.paths[p].length;
+        std::vector<ZipStep>& steps = twice.zippers[zipper++];
+        steps.assign(std::min(a, b), ZipStep::kBoth);
+        steps.insert(steps.end(), std::max(a, b) - std::min(a, b), a > b ? ZipStep::kFirst : ZipStep::kSecond);
+    }
+    return twice;
+}
+
+// Two levels, as in a file: the coarser one guides the other.
+struct TwoLevels {
+    Level coarse, fine;
+};
+
+TwoLevels random_levels(Random& random) {
+    TwoLevels levels;
+    levels.fine = random_level(random);
+    levels.coarse = random_level(random, &levels.fine);
+    return levels;
+}
+
+template <class Coder>
+bool code(Coder& coder, TwoLevels& levels, Glued* glued) {
     BorderModels models;
-    EXPECT_TRUE(code(encoder, models, level, glued));
+    return code(coder, models, levels.coarse, glued) && code(coder, models, levels.fine, glued, &levels.coarse);
+}
+
+Bytes encoded(TwoLevels levels, Glued* glued) {
+    RangeEncoder encoder;
+    EXPECT_TRUE(code(encoder, levels, glued));
     return encoder.finish();
+}
+
+TwoLevels without_borders(const TwoLevels& levels) {
+    return {without_borders(levels.coarse), without_borders(levels.fine)};
+}
+
+void expect_equal(const Level& a, const Level& b) {
+    for (size_t c = 0; c < a.walks.size(); ++c) ASSERT_EQ(b.walks[c].samples, a.walks[c].samples);
+    for (size_t p = 0; p < a.paths.size(); ++p) ASSERT_EQ(b.paths[p].length, a.paths[p].length);
 }
 
 TEST(ChartBorder, RandomBordersAndZippersComeBack) {
     Random random(1);
     for (int round = 0; round < 300; ++round) {
-        const Level level = random_level(random);
+        const TwoLevels levels = random_levels(random);
         Glued written, read;
-        const Bytes bytes = encoded(level, &written);
-        Level back = without_borders(level);
+        const Bytes bytes = encoded(levels, &written);
+        TwoLevels back = without_borders(levels);
         RangeDecoder decoder(bytes);
-        BorderModels models;
-        ASSERT_TRUE(code(decoder, models, back, &read)) << round;
+        ASSERT_TRUE(code(decoder, back, &read)) << round;
         EXPECT_TRUE(decoder.intact());
-        for (size_t c = 0; c < level.walks.size(); ++c) ASSERT_EQ(back.walks[c].samples, level.walks[c].samples);
-        for (size_t p = 0; p < level.paths.size(); ++p) ASSERT_EQ(back.paths[p].length, level.paths[p].length);
+        expect_equal(levels.coarse, back.coarse);
+        expect_equal(levels.fine, back.fine);
         ASSERT_EQ(read, written);
+    }
+}
+
+void write_raw(const Level& level, const Level* coarse, test::RawBorderWriter& writer) {
+    uint32_t p = 0;
+    size_t zipper = 0;
+    for (size_t c = 0; c < level.walks.size(); ++c) {
+        const Walk& walk = level.walks[c];
+        const uint32_t first = p, column = walk.samples[0] % walk.columns, row = walk.samples[0] / walk.columns;
+        if (coarse) {
+            std::vector<std::array<int64_t, 2>> guide;
+            for (const uint32_t i : coarse->walks[c].samples)
+                guide.push_back({i % coarse->walks[c].columns, i / coarse->walks[c].columns});
+            writer.begin_guided_chart(column, row, guide);
+        } else {
+            writer.begin_chart(walk.columns, walk.rows, column, row);
+        }
+        size_t done = 0;
+        for (; p < first + level.path_counts[c]; ++p) {
+            const BorderPath& path = level.paths[p];
+            if (coarse) {
+                writer.guided_length(path.length, coarse->paths[p].length, path.mate < p);
+            } else if (path.mate < p) {
+                writer.length_of_second(path.length, level.paths[path.mate].length);
+            } else {
+                writer.length(path.length);
+            }
+            writer.steps(walk.directions.substr(done, path.length));
+            done += path.length;
+        }
+        for (uint32_t q = first; q < p; ++q) {
+            if (level.paths[q].mate >= q) continue;
+            std::string steps;
+            for (const ZipStep step : level.zippers[zipper]) steps += static_cast<char>('0' + static_cast<int>(step));
+            writer.zipper(level.paths[level.paths[q].mate].length, level.paths[q].length, steps);
+            ++zipper;
+        }
     }
 }
 
 TEST(ChartBorder, BytesAreThoseOfTheText) {
     Random random(2);
     for (int round = 0; round < 100; ++round) {
-        const Level level = random_level(random);
+        const TwoLevels levels = random_levels(random);
         RangeEncoder encoder;
         test::RawBorderWriter writer(&encoder);
-        uint32_t p = 0;
-        size_t zipper = 0;
-        for (size_t c = 0; c < level.walks.size(); ++c) {
-            const Walk& walk = level.walks[c];
-            const uint32_t first = p;
-            writer.begin_chart(walk.columns, walk.rows, walk.samples[0] % walk.columns, walk.samples[0] / walk.columns);
-            size_t done = 0;
-            for (; p < first + level.path_counts[c]; ++p) {
-                const BorderPath& path = level.paths[p];
-                if (path.mate < p) {
-                    writer.length_of_second(path.length, level.paths[path.mate].length);
-                } else {
-                    writer.length(path.length);
-                }
-                writer.steps(walk.directions.substr(done, path.length));
-                done += path.length;
-            }
-            for (uint32_t q = first; q < p; ++q) {
-                if (level.paths[q].mate >= q) continue;
-                std::string steps;
-                for (const ZipStep step : level.zippers[zipper])
-                    steps += static_cast<char>('0' + static_cast<int>(step));
-                writer.zipper(level.paths[level.paths[q].mate].length, level.paths[q].length, steps);
-                ++zipper;
-            }
-        }
-        ASSERT_EQ(encoder.finish(), encoded(level, nullptr)) << round;
+        write_raw(levels.coarse, nullptr, writer);
+        write_raw(levels.fine, &levels.coarse, writer);
+        ASSERT_EQ(encoder.finish(), encoded(levels, nullptr)) << round;
     }
+}
+
+// A border costs little where it follows that of the coarser level.
+TEST(ChartBorder, AGuideSavesHalf) {
+    Random random(4);
+    size_t alone = 0, guided = 0;
+    for (int round = 0; round < 100; ++round) {
+        TwoLevels levels;
+        levels.coarse = random_level(random);
+        levels.fine = doubled(levels.coarse);
+        RangeEncoder one;
+        BorderModels models;
+        ASSERT_TRUE(code(one, models, levels.coarse, nullptr));
+        const size_t coarse = one.finish().size();
+        RangeEncoder two;
+        BorderModels fresh;
+        ASSERT_TRUE(code(two, fresh, levels.fine, nullptr));
+        alone += two.finish().size();
+        guided += encoded(levels, nullptr).size() - coarse;
+    }
+    EXPECT_LT(2 * guided, alone);
 }
 
 TEST(ChartBorder, DamagedStreamsStayInBounds) {
     Random random(3);
-    for (int round = 0; round < 60; ++round) {
-        const Level level = random_level(random);
-        const Bytes whole = encoded(level, nullptr);
-        const auto check = [&](const Bytes& bytes) {
-            Level back = without_borders(level);
-            RangeDecoder decoder(bytes);
-            BorderModels models;
-            Glued glued;
-            if (!code(decoder, models, back, &glued)) return;
-            for (const Walk& walk : back.walks) {
+    const auto check = [](const TwoLevels& levels, const Bytes& bytes) {
+        TwoLevels back = without_borders(levels);
+        RangeDecoder decoder(bytes);
+        Glued glued;
+        if (!code(decoder, back, &glued)) return;
+        for (const Level* level : {&back.coarse, &back.fine}) {
+            for (const Walk& walk : level->walks) {
                 ASSERT_GE(walk.samples.size(), 3u);
                 for (const uint32_t i : walk.samples) ASSERT_LT(i, walk.columns * walk.rows);
             }
-        };
-        for (size_t n = 0; n < whole.size(); ++n) check({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(n)});
+        }
+    };
+    for (int round = 0; round < 60; ++round) {
+        const TwoLevels levels = random_levels(random);
+        const Bytes whole = encoded(levels, nullptr);
+        for (size_t n = 0; n < whole.size(); ++n)
+            check(levels, {whole.begin(), whole.begin() + static_cast<ptrdiff_t>(n)});
         for (size_t bit = 0; bit < whole.size() * 8; ++bit) {
             Bytes bytes = whole;
             bytes[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
-            check(bytes);
+            check(levels, bytes);
         }
     }
     for (int round = 0; round < 300; ++round) {
-        const Level level = random_level(random);
+        const TwoLevels levels = random_levels(random);
         Bytes noise(random.below(80));
         for (uint8_t& b : noise) b = static_cast<uint8_t>(random.below(256));
-        Level back = without_borders(level);
-        RangeDecoder decoder(noise);
-        BorderModels models;
-        (void)code(decoder, models, back, nullptr);
+        check(levels, noise);
     }
 }
 
@@ -259,7 +363,7 @@ bool accepted(const std::function<void(test::RawBorderWriter&)>& write, std::vec
     Level level;
     level.walks = {{4, 3, {}, ""}};
     level.path_counts = {static_cast<uint32_t>(mates.size())};
-    for (const uint32_t mate : mates) level.paths.push_back({mate, 0, 0, 0});
+    for (const uint32_t mate : mates) level.paths.push_back({mate, 0, 0, 0, 0, 0});
     RangeDecoder decoder(bytes);
     BorderModels models;
     return code(decoder, models, level, nullptr) && decoder.intact();
