@@ -63,13 +63,21 @@ class BorderGuide {
   public:
     static constexpr uint32_t kClasses = 12;
 
-    BorderGuide(const BorderChart& chart, const BorderPath& path) : chart_(chart), path_(path) {}
+    BorderGuide(const BorderChart& chart, const BorderPath& path) : chart_(chart), path_(path) {
+        if (!chart.coarse) return;
+        here_ = sample(0);
+        next_ = sample(path.coarse_length > 0 ? 1 : 0);
+    }
 
     // Returns the class of the angle from the direction of the last step to where the coarser border goes on, seen from
     // a sample of this level.
     uint32_t look(uint32_t column, uint32_t row, uint32_t direction) {
-        while (at_ < path_.coarse_length && distance(at_ + 1, column, row) <= distance(at_, column, row)) ++at_;
-        const auto [x, y] = offset(at_ < path_.coarse_length ? at_ + 1 : at_, column, row);
+        while (at_ < path_.coarse_length && distance(next_, column, row) <= distance(here_, column, row)) {
+            ++at_;
+            here_ = next_;
+            if (at_ < path_.coarse_length) next_ = sample(at_ + 1);
+        }
+        const int64_t x = next_[0] - int64_t{column}, y = next_[1] - int64_t{row};
         const auto [dx, dy] = kDirections[direction];
         return angle_class(dx * x + dy * y, dx * y - dy * x);
     }
@@ -94,22 +102,22 @@ class BorderGuide {
         }
         return left < 0 ? 5 - size : 5 + size;
     }
-    // From a sample of this level to sample k of the coarser path.
-    std::array<int64_t, 2> offset(uint32_t k, uint32_t column, uint32_t row) const {
+    // Column and row of sample k of the coarser path, in samples of this level.
+    std::array<int64_t, 2> sample(uint32_t k) const {
         uint32_t i = path_.coarse_first + k;
         if (i >= chart_.coarse_border_length) i -= chart_.coarse_border_length;
-        const uint32_t sample = chart_.coarse[i];
-        return {2 * int64_t{sample % chart_.coarse_columns} - column,
-                2 * int64_t{sample / chart_.coarse_columns} - row};
+        const uint32_t at = chart_.coarse[i];
+        return {2 * int64_t{at % chart_.coarse_columns}, 2 * int64_t{at / chart_.coarse_columns}};
     }
-    int64_t distance(uint32_t k, uint32_t column, uint32_t row) const {
-        const auto [x, y] = offset(k, column, row);
+    static int64_t distance(const std::array<int64_t, 2>& a, uint32_t column, uint32_t row) {
+        const int64_t x = a[0] - int64_t{column}, y = a[1] - int64_t{row};
         return x * x + y * y;
     }
 
     const BorderChart& chart_;
     const BorderPath& path_;
-    uint32_t at_ = 0;  // the sample of the coarser path that is near
+    uint32_t at_ = 0;                         // the sample of the coarser path that is near
+    std::array<int64_t, 2> here_{}, next_{};  // it and the one behind it; equal at the end
 };
 
 // Coder: as for BandCoder. An encoder brings charts and paths, a decoder fills them in. The functions return false on

@@ -21,20 +21,22 @@ void spread_corrections(const ChartRamp& chart, std::span<const uint32_t> border
     const auto stride = static_cast<int32_t>(chart.columns);
     const std::array<int32_t, 8> around = {-stride - 1, -stride, -stride + 1, -1, 1, stride - 1, stride, stride + 1};
     const auto neighbour = [](uint32_t i, int32_t offset) { return i + static_cast<uint32_t>(offset); };
+    const auto reach = [&](uint32_t i, uint32_t layer) {
+        if (depth[i] != kInside) return;
+        depth[i] = static_cast<uint8_t>(layer);
+        queue[end++] = i;
+    };
     for (uint32_t layer = 1; layer <= width; ++layer) {
         const uint32_t last = end;
         for (; begin < last; ++begin) {
-            const uint32_t row = queue[begin] / chart.columns, column = queue[begin] % chart.columns;
-            for (const int32_t offset : around) {
-                const bool outside =
-                    (column == 0 && (offset == -1 || offset == stride - 1 || offset == -stride - 1)) ||
-                    (column + 1 == chart.columns && (offset == 1 || offset == stride + 1 || offset == -stride + 1)) ||
-                    (row == 0 && offset < -1) || (row + 1 == chart.rows && offset > 1);
-                if (outside) continue;
-                const uint32_t i = neighbour(queue[begin], offset);
-                if (depth[i] != kInside) continue;
-                depth[i] = static_cast<uint8_t>(layer);
-                queue[end++] = i;
+            if (layer == 1) {
+                const uint32_t row = queue[begin] / chart.columns, column = queue[begin] % chart.columns;
+                for (uint32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < chart.rows; ++r) {
+                    for (uint32_t c = column > 0 ? column - 1 : 0; c <= column + 1 && c < chart.columns; ++c)
+                        reach(r * chart.columns + c, layer);
+                }
+            } else {
+                for (const int32_t offset : around) reach(neighbour(queue[begin], offset), layer);
             }
         }
         const float decay = correction_decay(layer, width);

@@ -37,8 +37,15 @@ struct TriangleSink {
     }
 };
 
-void add_cell(const ChartGrid& grid, uint32_t row, uint32_t column, uint32_t first, const float* samples,
-              TriangleSink* sink) {
+bool main_is_shorter(const float* samples, const std::array<uint32_t, 4>& corners) {
+    const auto [a, b, c, d] = corners;
+    return squared_distance(samples + size_t{a} * 3, samples + size_t{c} * 3) <=
+           squared_distance(samples + size_t{b} * 3, samples + size_t{d} * 3);
+}
+
+// A cell with a sample on the border, or with undefined ones.
+void add_border_cell(const ChartGrid& grid, uint32_t row, uint32_t column, uint32_t first, const float* samples,
+                     TriangleSink* sink) {
     const uint32_t i = grid.index(row, column);
     const std::array<uint32_t, 4> corner = {i, i + 1, i + grid.columns + 1, i + grid.columns};
     std::array<uint32_t, 4> defined{};
@@ -50,11 +57,30 @@ void add_cell(const ChartGrid& grid, uint32_t row, uint32_t column, uint32_t fir
     if (count < 4) return;
     const Split split = chart_split(grid, row, column);
     const auto [a, b, c, d] = defined;
-    const bool main = split == Split::kMain || (split == Split::kShorter &&
-                                                squared_distance(samples + size_t{a} * 3, samples + size_t{c} * 3) <=
-                                                    squared_distance(samples + size_t{b} * 3, samples + size_t{d} * 3));
+    const bool main = split == Split::kMain || (split == Split::kShorter && main_is_shorter(samples, defined));
     sink->add(a, b, main ? c : d);
     main ? sink->add(a, c, d) : sink->add(b, c, d);
+}
+
+// A cell whose samples are all inside: no two of them are one point.
+void add_inner_cell(uint32_t i, uint32_t columns, const float* samples, TriangleSink* sink) {
+    const std::array<uint32_t, 4> corners = {i, i + 1, i + columns + 1, i + columns};
+    const auto [a, b, c, d] = corners;
+    const bool main = main_is_shorter(samples, corners);
+    sink->count += 2;
+    if (sink->count > sink->capacity) return;
+    sink->out[0] = a;
+    sink->out[1] = b;
+    sink->out[2] = main ? c : d;
+    sink->out[3] = main ? a : b;
+    sink->out[4] = c;
+    sink->out[5] = d;
+    sink->out += 6;
+}
+
+// Whether a column of two samples may belong to an inner cell.
+bool both_inside(uint8_t upper, uint8_t lower) {
+    return static_cast<uint8_t>(upper - 1) < kUndefined - 1 && static_cast<uint8_t>(lower - 1) < kUndefined - 1;
 }
 
 }  // namespace
@@ -66,8 +92,17 @@ bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, 
         const DecodedChart& chart = ws.charts[c];
         const ChartGrid grid = {ws.depth + chart.first, ws.point + chart.first, chart.columns};
         for (uint32_t row = 0; row + 1 < chart.rows; ++row) {
-            for (uint32_t column = 0; column + 1 < chart.columns; ++column)
-                add_cell(grid, row, column, chart.first, samples, &sink);
+            const uint8_t *upper = grid.depth + size_t{row} * chart.columns, *lower = upper + chart.columns;
+            bool left = both_inside(upper[0], lower[0]);
+            for (uint32_t column = 0; column + 1 < chart.columns; ++column) {
+                const bool right = both_inside(upper[column + 1], lower[column + 1]);
+                if (left && right) {
+                    add_inner_cell(chart.first + grid.index(row, column), chart.columns, samples, &sink);
+                } else {
+                    add_border_cell(grid, row, column, chart.first, samples, &sink);
+                }
+                left = right;
+            }
         }
     }
     return sink.count == capacity;
