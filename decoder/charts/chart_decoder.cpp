@@ -171,9 +171,10 @@ ChartWorkspace lay_out_charts(const ChartLevelShape& shape, Arena* arena) {
     ws.point = arena->take<uint32_t>(samples);
     ws.depth = arena->take<uint8_t>(samples);
     ws.queue = arena->take<uint32_t>(samples);
-    ws.corrections = arena->take<float>(samples * 3);
-    ws.members = arena->take<uint32_t>(samples);
-    ws.sums = arena->take<float>(samples * 3);
+    // Bands are not needed any more when seams are closed.
+    ws.corrections = static_cast<float*>(static_cast<void*>(ws.pyramid.bands[0]));
+    ws.members = arena->take<uint32_t>(shape.size.vertices);
+    ws.sums = arena->take<float>(size_t{shape.size.vertices} * 3);
     return ws;
 }
 

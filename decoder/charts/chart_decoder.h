@@ -47,7 +47,7 @@ struct ChartWorkspace {
     uint32_t* point = nullptr;   // vertex of the glued surface; unspecified where undefined
     uint8_t* depth = nullptr;    // kOnBorder, steps to the border as far as they are known, kInside, kUndefined
     uint32_t* queue = nullptr;
-    float* corrections = nullptr;  // triples
+    float* corrections = nullptr;  // triples; takes the place of the bands
     // Per vertex:
     uint32_t* members = nullptr;
     float* sums = nullptr;  // triples

@@ -20,21 +20,50 @@ struct ChartGrid {
     uint32_t point(uint32_t row, uint32_t column) const { return points[index(row, column)]; }
 };
 
-// Collects triangles that have three different points.
-struct TriangleSink {
-    const uint32_t* point;
-    uint32_t* out;
-    uint32_t capacity;
-    uint32_t count = 0;  // may pass the capacity
+class TriangleSink {
+  public:
+    TriangleSink(const uint32_t* point, const float* samples, uint32_t capacity, const ChartTriangles& out)
+        : point_(point), samples_(samples), capacity_(capacity), out_(out) {}
 
+    uint32_t count() const { return count_; }  // may pass the capacity
+
+    // Adds a triangle of flat samples if it has three different points.
     void add(uint32_t a, uint32_t b, uint32_t c) {
-        if (point[a] == point[b] || point[b] == point[c] || point[c] == point[a]) return;
-        if (count++ >= capacity) return;
-        out[0] = a;
-        out[1] = b;
-        out[2] = c;
-        out += 3;
+        if (point_[a] == point_[b] || point_[b] == point_[c] || point_[c] == point_[a]) return;
+        add_proper(a, b, c);
     }
+    // Adds one that is known to have them.
+    void add_proper(uint32_t a, uint32_t b, uint32_t c) {
+        if (count_++ >= capacity_) return;
+        if (out_.triangles) {
+            out_.triangles[0] = out_.names ? out_.names[a] : a;
+            out_.triangles[1] = out_.names ? out_.names[b] : b;
+            out_.triangles[2] = out_.names ? out_.names[c] : c;
+            out_.triangles += 3;
+        }
+        if (out_.normals) add_normal({a, b, c});
+    }
+
+  private:
+    void add_normal(const std::array<uint32_t, 3>& corners) {
+        const float *a = samples_ + size_t{corners[0]} * 3, *b = samples_ + size_t{corners[1]} * 3,
+                    *c = samples_ + size_t{corners[2]} * 3;
+        float u[3], v[3], n[3];
+        for (int k = 0; k < 3; ++k) {
+            u[k] = b[k] - a[k];
+            v[k] = c[k] - a[k];
+        }
+        cross(u, v, n);
+        for (const uint32_t corner : corners) {
+            float* sum = out_.normals + size_t{point_[corner]} * 3;
+            for (int k = 0; k < 3; ++k) sum[k] = sum[k] + n[k];
+        }
+    }
+
+    const uint32_t* point_;
+    const float* samples_;
+    uint32_t capacity_, count_ = 0;
+    ChartTriangles out_;
 };
 
 bool main_is_shorter(const float* samples, const std::array<uint32_t, 4>& corners) {
@@ -67,15 +96,8 @@ void add_inner_cell(uint32_t i, uint32_t columns, const float* samples, Triangle
     const std::array<uint32_t, 4> corners = {i, i + 1, i + columns + 1, i + columns};
     const auto [a, b, c, d] = corners;
     const bool main = main_is_shorter(samples, corners);
-    sink->count += 2;
-    if (sink->count > sink->capacity) return;
-    sink->out[0] = a;
-    sink->out[1] = b;
-    sink->out[2] = main ? c : d;
-    sink->out[3] = main ? a : b;
-    sink->out[4] = c;
-    sink->out[5] = d;
-    sink->out += 6;
+    sink->add_proper(a, b, main ? c : d);
+    sink->add_proper(main ? a : b, c, d);
 }
 
 // Whether a column of two samples may belong to an inner cell.
@@ -86,8 +108,9 @@ bool both_inside(uint8_t upper, uint8_t lower) {
 }  // namespace
 
 bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
-                        uint32_t* triangles, uint32_t capacity) {
-    TriangleSink sink{ws.point, triangles, capacity};
+                        const ChartTriangles& out) {
+    if (out.normals) std::fill_n(out.normals, size_t{shape.size.vertices} * 3, 0.0f);
+    TriangleSink sink(ws.point, samples, shape.size.triangles, out);
     for (uint32_t c = 0; c < shape.chart_count; ++c) {
         const DecodedChart& chart = ws.charts[c];
         const ChartGrid grid = {ws.depth + chart.first, ws.point + chart.first, chart.columns};
@@ -105,28 +128,8 @@ bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, 
             }
         }
     }
-    return sink.count == capacity;
-}
-
-void chart_normals(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
-                   const uint32_t* triangles, float* normals) {
-    std::fill_n(normals, size_t{shape.size.vertices} * 3, 0.0f);
-    for (uint32_t t = 0; t < shape.size.triangles; ++t) {
-        const uint32_t* corner = triangles + size_t{t} * 3;
-        const float *a = samples + size_t{corner[0]} * 3, *b = samples + size_t{corner[1]} * 3,
-                    *c = samples + size_t{corner[2]} * 3;
-        float u[3], v[3], n[3];
-        for (int k = 0; k < 3; ++k) {
-            u[k] = b[k] - a[k];
-            v[k] = c[k] - a[k];
-        }
-        cross(u, v, n);
-        for (int i = 0; i < 3; ++i) {
-            float* sum = normals + size_t{ws.point[corner[i]]} * 3;
-            for (int k = 0; k < 3; ++k) sum[k] = sum[k] + n[k];
-        }
-    }
-    for (uint32_t v = 0; v < shape.size.vertices; ++v) normalize(normals + size_t{v} * 3);
+    for (uint32_t v = 0; out.normals && v < shape.size.vertices; ++v) normalize(out.normals + size_t{v} * 3);
+    return sink.count() == shape.size.triangles;
 }
 
 }  // namespace gim

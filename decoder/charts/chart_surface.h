@@ -22,13 +22,16 @@ void for_each_chart_vertex(const ChartLevelShape& shape, const ChartWorkspace& w
     }
 }
 
-// Writes triangles as flat sample indices. Returns false unless there are exactly `capacity`; never writes more.
-bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
-                        uint32_t* triangles, uint32_t capacity);
+// What to make of the triangles of a level.
+struct ChartTriangles {
+    const uint32_t* names = nullptr;  // per flat sample: what a corner is called in `triangles`; null: as it is
+    uint32_t* triangles = nullptr;    // three names each; may be null
+    float* normals = nullptr;         // per vertex: the sum of the triangles' normals by area; may be null
+};
 
-// Computes unit normals of the vertices: the area-weighted sum over the triangles around them, or zero if that is zero.
-// triangles: flat sample indices.
-void chart_normals(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
-                   const uint32_t* triangles, float* normals);
+// Finds the triangles, whether they are wanted or not. Returns false unless there are as many as the level says; never
+// writes more.
+bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, const float* samples,
+                        const ChartTriangles& out);
 
 }  // namespace gim

@@ -9,26 +9,16 @@
 namespace gim {
 namespace {
 
-// One level, decoded and triangulated.
+// One level, decoded.
 struct Surface {
     ChartLevelShape shape;
     ChartWorkspace ws;
-    uint32_t* triangles = nullptr;    // flat samples
-    float* vertex_normals = nullptr;  // scratch, one triple per vertex
-    const float* samples = nullptr;   // units
-
-    void lay_out(Arena* arena) {
-        ws = lay_out_charts(shape, arena);
-        triangles = arena->take<uint32_t>(size_t{shape.size.triangles} * 3);
-        vertex_normals = arena->take<float>(size_t{shape.size.vertices} * 3);
-    }
+    const float* samples = nullptr;  // units
 };
 
 uint64_t scratch_size(const ChartLevelShape& shape) {
-    Surface surface;
-    surface.shape = shape;
     Arena arena(nullptr);
-    surface.lay_out(&arena);
+    (void)lay_out_charts(shape, &arena);
     return arena.used();
 }
 
@@ -65,15 +55,12 @@ Status decode(const LevelRequest& request, const Memory& scratch, Surface* surfa
         return s;
     if (Status s = check_scratch(scratch, scratch_size(surface->shape)); s != Status::kOk) return s;
     Arena arena(scratch.bytes);
-    surface->lay_out(&arena);
+    surface->ws = lay_out_charts(surface->shape, &arena);
     if (Status s =
             decode_charts(request.header, request.file, request.limits, surface->shape, surface->ws, &surface->samples);
         s != Status::kOk)
         return s;
-    if (!lie_in_grid(surface->shape, surface->ws)) return Status::kMalformed;
-    const bool as_told = triangulate_charts(surface->shape, surface->ws, surface->samples, surface->triangles,
-                                            surface->shape.size.triangles);
-    return as_told ? Status::kOk : Status::kMalformed;
+    return lie_in_grid(surface->shape, surface->ws) ? Status::kOk : Status::kMalformed;
 }
 
 }  // namespace
@@ -117,12 +104,8 @@ Status decode_chart_mesh(const LevelRequest& request, const SurfaceArrays& out, 
             if (out.texcoords)
                 set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
         });
-    if (out.normals) chart_normals(shape, surface.ws, surface.samples, surface.triangles, out.normals);
-    if (out.triangles) {
-        for (size_t k = 0; k < size_t{shape.size.triangles} * 3; ++k)
-            out.triangles[k] = surface.ws.point[surface.triangles[k]];
-    }
-    return Status::kOk;
+    const ChartTriangles triangles = {surface.ws.point, out.triangles, out.normals};
+    return triangulate_charts(shape, surface.ws, surface.samples, triangles) ? Status::kOk : Status::kMalformed;
 }
 
 Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
@@ -133,12 +116,11 @@ Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, 
     const ChartLevelShape& shape = surface.shape;
     const size_t count = size_t{shape.columns} * shape.rows * 3;
     std::fill_n(out.positions, count, std::numeric_limits<float>::quiet_NaN());
-    if (out.normals) {
-        std::fill_n(out.normals, count, 0.0f);
-        chart_normals(shape, surface.ws, surface.samples, surface.triangles, surface.vertex_normals);
-    }
+    if (out.normals) std::fill_n(out.normals, count, 0.0f);
     if (out.texcoords) std::fill_n(out.texcoords, count / 3 * 2, 0.0f);
-    uint32_t* place = surface.ws.queue;  // place in the grid of each flat sample
+    // Places in the grid of flat samples, and normals of vertices, lie where nothing is needed any more.
+    uint32_t* place = surface.ws.queue;
+    float* vertex_normals = out.normals ? surface.ws.sums : nullptr;
     for (uint32_t c = 0; c < shape.chart_count; ++c) {
         const DecodedChart& chart = surface.ws.charts[c];
         for (uint32_t i = 0; i < chart.columns * chart.rows; ++i) {
@@ -151,13 +133,13 @@ Status decode_chart_grid(const LevelRequest& request, const SurfaceArrays& out, 
             if (out.texcoords)
                 set_texcoords(header, chart.box, (i % chart.columns) << level, (i / chart.columns) << level,
                               out.texcoords + size_t{place[sample]} * 2);
-            if (out.normals)
-                std::copy_n(surface.vertex_normals + size_t{surface.ws.point[sample]} * 3, 3,
-                            out.normals + size_t{place[sample]} * 3);
         }
     }
-    if (out.triangles) {
-        for (size_t k = 0; k < size_t{shape.size.triangles} * 3; ++k) out.triangles[k] = place[surface.triangles[k]];
+    const ChartTriangles triangles = {place, out.triangles, vertex_normals};
+    if (!triangulate_charts(shape, surface.ws, surface.samples, triangles)) return Status::kMalformed;
+    for (uint32_t sample = 0; out.normals && sample < shape.samples; ++sample) {
+        if (surface.ws.depth[sample] == kUndefined) continue;
+        std::copy_n(vertex_normals + size_t{surface.ws.point[sample]} * 3, 3, out.normals + size_t{place[sample]} * 3);
     }
     return Status::kOk;
 }

@@ -15,9 +15,7 @@ struct Surface {
     RasterWork work;
     ChartLevelShape shape;
     ChartWorkspace ws;
-    float* samples = nullptr;         // units
-    uint32_t* triangles = nullptr;    // flat samples
-    float* vertex_normals = nullptr;  // one triple per vertex
+    float* samples = nullptr;  // units
 
     Status open(const LevelRequest& request) {
         if (Status s = open_raster(request, &raster); s != Status::kOk) return s;
@@ -35,8 +33,6 @@ struct Surface {
         ws.depth = work.depth;
         ws.point = work.point;
         samples = arena->take<float>(grid.samples() * 3);
-        triangles = arena->take<uint32_t>(size_t{shape.size.triangles} * 3);
-        vertex_normals = arena->take<float>(size_t{shape.size.vertices} * 3);
     }
     uint64_t scratch_size() const {
         Surface counted = *this;
@@ -58,8 +54,10 @@ struct Surface {
             for (size_t k = 3 * i; k < 3 * i + 3; ++k)
                 samples[k] = work.depth[i] == kUndefined ? 0.0f : unit * static_cast<float>(work.values[k]);
         }
-        return triangulate_charts(shape, ws, samples, triangles, shape.size.triangles) ? Status::kOk
-                                                                                       : Status::kMalformed;
+        return Status::kOk;
+    }
+    Status triangulate(const ChartTriangles& out) const {
+        return triangulate_charts(shape, ws, samples, out) ? Status::kOk : Status::kMalformed;
     }
     void set_texcoords(uint32_t sample, float* uv) const {
         uv[0] = static_cast<float>(sample % grid.columns) / static_cast<float>(grid.columns - 1);
@@ -103,19 +101,15 @@ Status decode_raster_mesh(const LevelRequest& request, const SurfaceArrays& out,
                                         surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
                               if (out.texcoords) surface.set_texcoords(sample, out.texcoords + size_t{v} * 2);
                           });
-    if (out.normals) chart_normals(surface.shape, surface.ws, surface.samples, surface.triangles, out.normals);
-    if (out.triangles) {
-        for (size_t k = 0; k < size_t{surface.shape.size.triangles} * 3; ++k)
-            out.triangles[k] = surface.work.point[surface.triangles[k]];
-    }
-    return Status::kOk;
+    return surface.triangulate({surface.work.point, out.triangles, out.normals});
 }
 
 Status decode_raster_grid(const LevelRequest& request, const SurfaceArrays& out, const Memory& scratch) {
     Surface surface;
     if (Status s = surface.decode(request, scratch); s != Status::kOk) return s;
-    if (out.normals)
-        chart_normals(surface.shape, surface.ws, surface.samples, surface.triangles, surface.vertex_normals);
+    // Normals of vertices lie where the values were, which take as much room or more.
+    float* vertex_normals = out.normals ? static_cast<float*>(static_cast<void*>(surface.work.values)) : nullptr;
+    if (Status s = surface.triangulate({nullptr, out.triangles, vertex_normals}); s != Status::kOk) return s;
     for (uint32_t i = 0; i < surface.grid.samples(); ++i) {
         const bool is_defined = surface.work.depth[i] != kUndefined;
         float* position = out.positions + size_t{i} * 3;
@@ -129,10 +123,9 @@ Status decode_raster_grid(const LevelRequest& request, const SurfaceArrays& out,
         if (out.normals) {
             float* normal = out.normals + size_t{i} * 3;
             std::fill_n(normal, 3, 0.0f);
-            if (is_defined) std::copy_n(surface.vertex_normals + size_t{surface.work.point[i]} * 3, 3, normal);
+            if (is_defined) std::copy_n(vertex_normals + size_t{surface.work.point[i]} * 3, 3, normal);
         }
     }
-    if (out.triangles) std::copy_n(surface.triangles, size_t{surface.shape.size.triangles} * 3, out.triangles);
     return Status::kOk;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "decoder/charts/chart_decoder.h"
 #include "format/checksum.h"
 #include "format/container.h"
 #include "gim/decoder.hpp"
@@ -214,6 +215,23 @@ TEST(ReadCharts, ALevelNeedsItsPrefixAndNoMore) {
             EXPECT_EQ(decode(damaged, l).status, GIM_OK);
         }
     });
+}
+
+// 2^26 samples, the default limit, need less than 4 GiB.
+TEST(ReadCharts, MemoryIsBoundedByTheSamplesOfAllBoxes) {
+    constexpr uint64_t kModels = 16384, kBytesPerSample = 60;  // models: whatever the size
+    for (const char* name : {"charts-torus-lossy", "charts-torus-lossless", "charts-encoder-lossy"}) {
+        const Bytes file = vector_file(name);
+        gim_info info;
+        ASSERT_EQ(gim_read_info(file.data(), file.size(), nullptr, &info), GIM_OK);
+        Header header;
+        ASSERT_EQ(parse_header(file, {}, &header), Status::kOk);
+        ChartLevelShape shape;
+        ASSERT_EQ(open_charts(header, file, {}, 0, &shape), Status::kOk);
+        gim_level_info level;
+        ASSERT_EQ(gim_read_level_info(&info, file.data(), file.size(), 0, 0, &level), GIM_OK);
+        EXPECT_LT(level.scratch_size, kModels + kBytesPerSample * shape.samples) << name;
+    }
 }
 
 TEST(ReadCharts, CallersMistakesAreTold) {
