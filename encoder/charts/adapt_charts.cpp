@@ -64,7 +64,15 @@ Result<std::vector<double>> adapt_charts(const Mesh& mesh, uint32_t samples, con
     Atlas adapted = atlas;
     GIM_TRY(maps, parametrize_charts(atlas.charts, importance, parametrize, progress));
     for (size_t c = 0; c < maps.size(); ++c) {
-        if (!maps[c].overlaps) adapted.maps[c] = std::move(maps[c]);
+        if (!maps[c].overlaps) {
+            adapted.maps[c] = std::move(maps[c]);
+            continue;
+        }
+        // The chart keeps its shape, but its size is that of an important chart.
+        std::vector<double> own;
+        for (const uint32_t f : atlas.charts[c].source_face) own.push_back(importance[f]);
+        measure_map(atlas.charts[c], own, adapted.maps[c]);
+        scale_best(adapted.maps[c]);
     }
     const std::vector<ClosestPoint> now = distances_of(mesh, adapted, samples);
     const auto error = [&](const std::vector<ClosestPoint>& closest) {

@@ -91,6 +91,13 @@ void measure_map(const Chart& chart, const std::vector<double>& importance, Char
     measure_map(chart.mesh, elements_of(chart.mesh, importance), map);
 }
 
+void scale_best(ChartMap& map) {
+    const double scale = std::pow(map.energy / map.area, 0.25);
+    if (!std::isfinite(scale) || !(scale > 0)) return;
+    for (Vec2& p : map.uv) p *= scale;
+    map.energy /= scale * scale, map.area *= scale * scale;
+}
+
 ChartMap relax_chart(const Chart& chart, const std::vector<double>& importance, ChartMap map, double area_weight,
                      const BorderForce& force, const ChartParametrizeOptions& options) {
     const std::vector<MapElement> elements = elements_of(chart.mesh, importance);
@@ -140,12 +147,7 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
         map.strain = std::max(1.0, map.energy * map.area / overlapping);
         map.overlaps = border_crossing().has_value();
     }
-    // Newton may have stopped a little early. Correct the scale exactly.
-    const double scale = std::pow(map.energy / map.area, 0.25);
-    if (std::isfinite(scale) && scale > 0) {
-        for (Vec2& p : map.uv) p *= scale;
-        map.energy /= scale * scale, map.area *= scale * scale;
-    }
+    scale_best(map);  // Newton may have stopped a little early
     uint64_t flipped = 0;
     for (const Triangle& t : mesh.triangles)
         flipped += !(twice_signed_area(map.uv[t[0]], map.uv[t[1]], map.uv[t[2]]) > 0);

@@ -64,6 +64,9 @@ Result<ChartMap> parametrize_chart(const Chart& chart, const std::vector<double>
 // Measures the map's energy and area again.
 void measure_map(const Chart& chart, const std::vector<double>& importance, ChartMap& map);
 
+// Scales a measured map to its right size relative to other charts.
+void scale_best(ChartMap& map);
+
 // Continues from an upright map, with a force on its border. The energy counts the map's area `area_weight` times.
 // Below 1 the chart presses outwards into free room. Never flips a triangle. The force must keep the border from
 // crossing itself.
