@@ -28,6 +28,8 @@ class PartialFile {
     Result<void> write(std::span<const uint8_t> bytes);
     // Replaces the target.
     Result<void> take_name();
+    // Keeps the file under its temporary name, which it returns. Whoever takes it over must rename it or remove it.
+    std::string hand_over();
 
   private:
     PartialFile(std::filesystem::path target, std::string path)
@@ -39,6 +41,9 @@ class PartialFile {
     std::optional<Descriptor> file_;                    // open until it is written
     bool is_there_ = false;
 };
+
+// Removes what killed programs left of this target. No program may be writing it. Finds no names that were shortened.
+void remove_partials_of(const std::filesystem::path& target);
 
 bool write_all(int fd, std::span<const uint8_t> bytes);
 
