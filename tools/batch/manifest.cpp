@@ -8,7 +8,7 @@ namespace gim {
 namespace {
 
 constexpr int kFormat = 1;           // of the table, in the file's user_version
-constexpr int kReadPatience = 2000;  // ms to wait for others who read
+constexpr int kPatience = 2000;  // ms to wait for those who only read
 
 constexpr const char* kTable =
     "CREATE TABLE IF NOT EXISTS files (name TEXT PRIMARY KEY, path TEXT NOT NULL, "
@@ -147,9 +147,13 @@ const char* name_of(BatchRow::State state) {
 
 void Manifest::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
 
-Error Manifest::failure(const std::string& what) const {
+bool Manifest::is_busy() const {
     const int code = sqlite3_errcode(database_.get());
-    if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+    return code == SQLITE_BUSY || code == SQLITE_LOCKED;
+}
+
+Error Manifest::failure(const std::string& what) const {
+    if (is_busy())
         return {Stage::kWrite, "another gim batch has the manifest of this shard open; wait until it ends, or stop it"};
     return {Stage::kWrite, what + ": " + sqlite3_errmsg(database_.get())};
 }
@@ -172,7 +176,7 @@ Result<Manifest> Manifest::open_with(const std::string& path, int flags) {
 Result<Manifest> Manifest::open(const std::string& path) {
     Result<Manifest> manifest = open_with(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     if (!manifest.ok()) return manifest;
-    sqlite3_busy_timeout(manifest.value().database_.get(), kReadPatience);  // for one who reads the old rows
+    sqlite3_busy_timeout(manifest.value().database_.get(), kPatience);
     // With the lock held all the time, the log needs no memory that processes share, so it works on any file system.
     for (const char* const sql : {"PRAGMA locking_mode = EXCLUSIVE", "PRAGMA journal_mode = WAL",
                                   "PRAGMA synchronous = NORMAL", "BEGIN IMMEDIATE"}) {
@@ -190,18 +194,17 @@ Result<Manifest> Manifest::open(const std::string& path) {
     return manifest;
 }
 
-Result<Manifest> Manifest::open_to_read(const std::string& path) {
+Result<std::optional<Manifest>> Manifest::open_to_read(const std::string& path) {
     // Reading needs to write too: what a killed owner left in the log moves into the file.
-    Result<Manifest> manifest = open_with(path, SQLITE_OPEN_READWRITE);
-    if (!manifest.ok()) return manifest;
-    sqlite3* const database = manifest.value().database_.get();
-    sqlite3_busy_timeout(database, kReadPatience);
-    const Result<void> alone = manifest.value().run("PRAGMA locking_mode = EXCLUSIVE");
-    if (!alone.ok()) return alone.error();
-    const int format = format_of(database);
-    if (format < 0) return manifest.value().failure("cannot read the manifest");
+    Result<Manifest> opened = open_with(path, SQLITE_OPEN_READWRITE);
+    if (!opened.ok()) return opened.error();
+    Manifest& manifest = opened.value();
+    if (Result<void> alone = manifest.run("PRAGMA locking_mode = EXCLUSIVE"); !alone.ok()) return alone.error();
+    const int format = format_of(manifest.database_.get());
+    if (manifest.is_busy()) return std::optional<Manifest>();
+    if (format < 0) return manifest.failure("cannot read the manifest");
     if (format != kFormat) return Error{Stage::kInput, "this manifest is empty, or another version of gim made it"};
-    return manifest;
+    return std::optional<Manifest>(std::move(manifest));
 }
 
 Result<void> Manifest::put(const BatchRow& row) {

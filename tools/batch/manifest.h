@@ -20,8 +20,8 @@ class Manifest {
     // Opens the file for one process alone, and makes it if it is missing. A kill at any time leaves it whole; all that was
     // put before is there.
     static Result<Manifest> open(const std::string& path);
-    // Opens an existing file for reading. Fails if a process has it open.
-    static Result<Manifest> open_to_read(const std::string& path);
+    // Opens an existing file for reading. Nothing if a process has it open.
+    static Result<std::optional<Manifest>> open_to_read(const std::string& path);
 
     // Writes the row in place of the old one with that name.
     Result<void> put(const BatchRow& row);
@@ -37,6 +37,7 @@ class Manifest {
     explicit Manifest(sqlite3* database) : database_(database) {}
     static Result<Manifest> open_with(const std::string& path, int flags);
     Result<void> run(const std::string& sql);
+    bool is_busy() const;
     Error failure(const std::string& what) const;
 
     std::unique_ptr<sqlite3, Close> database_;
