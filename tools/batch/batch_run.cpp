@@ -117,8 +117,7 @@ Result<void> BatchRun::collect(std::list<Running>& running, const StopSignals& s
         if (outcome.kind == EncodeOutcome::Kind::kStopped) {
             if (stop.waiting() == 0) std::this_thread::sleep_for(kSignalsMayDiffer);
             if (stop.waiting() != 0) {
-                recover(row, command_.folder);
-                if (Result<void> put = manifest_.put(row); !put.ok()) return put;
+                if (Result<void> put = put_back(row); !put.ok()) return put;
                 continue;
             }
         }
@@ -127,17 +126,24 @@ Result<void> BatchRun::collect(std::list<Running>& running, const StopSignals& s
     return {};
 }
 
-// Ends all processes, and makes their rows wait again.
-Result<void> BatchRun::give_up(std::list<Running>& running) {
-    std::vector<BatchRow> rows;
+Result<void> BatchRun::put_back(BatchRow& row) {
+    remove_partials_of(output_path(command_.folder, row.name));
+    recover(row, command_.folder);
+    return manifest_.put(row);
+}
+
+// Ends all processes. What they finished counts, what they began waits again.
+Result<void> BatchRun::give_up(std::list<Running>& running, BatchCounts& counts) {
     for (const Running& one : running) one.process.stop();
     for (Running& one : running) {
-        one.process.finish();
-        recover(*one.row, command_.folder);
-        rows.push_back(*one.row);
+        const EncodeOutcome outcome = one.process.finish();
+        const bool is_finished =
+            outcome.kind == EncodeOutcome::Kind::kEncoded || outcome.kind == EncodeOutcome::Kind::kUnchanged;
+        Result<void> kept = is_finished ? end(*one.row, outcome, counts) : put_back(*one.row);
+        if (!kept.ok()) return kept;
     }
     running.clear();
-    return manifest_.put_all(rows);
+    return {};
 }
 
 Result<BatchCounts> BatchRun::run(std::vector<BatchRow>& rows, const StopSignals& stop) {
@@ -152,7 +158,7 @@ Result<BatchCounts> BatchRun::run(std::vector<BatchRow>& rows, const StopSignals
         wait_for_some(running);
         if (Result<void> collected = collect(running, stop, counts); !collected.ok()) return collected.error();
     }
-    if (Result<void> given_up = give_up(running); !given_up.ok()) return given_up.error();
+    if (Result<void> given_up = give_up(running, counts); !given_up.ok()) return given_up.error();
     counts.left = rows.size() - counts.encoded - counts.kept - counts.failed;
     return counts;
 }

@@ -48,7 +48,8 @@ class BatchRun {
     Result<void> fail(BatchRow& row, const std::string& reason, BatchCounts& counts);
     void wait_for_some(std::list<Running>& running) const;
     Result<void> collect(std::list<Running>& running, const StopSignals& stop, BatchCounts& counts);
-    Result<void> give_up(std::list<Running>& running);
+    Result<void> put_back(BatchRow& row);
+    Result<void> give_up(std::list<Running>& running, BatchCounts& counts);
 
     const BatchCommand& command_;
     Manifest& manifest_;
