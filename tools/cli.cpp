@@ -52,7 +52,7 @@ int run_gim(int argc, const char* const* argv) {
         "stderr.\n"
         "A command that fails leaves no file behind and changes none.");
     const std::array<Subcommand, 10> subcommands = {
-        add_encode(app), add_batch(app),  add_decode(app), add_info(app),        add_cut(app),
+        add_encode(app),  add_batch(app),  add_decode(app), add_info(app),        add_cut(app),
         add_compare(app), add_render(app), add_emboss(app), add_bench_scene(app), add_view(app)};
     int exit_status = 0;
     try {

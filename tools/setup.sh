@@ -8,6 +8,7 @@ readonly GIM_BUILD_PACKAGES=(
     g++ cmake ninja-build pkg-config
     libeigen3-dev libopenmesh-dev liblemon-dev libtbb-dev libzstd-dev
     libcli11-dev nlohmann-json3-dev libopenexr-dev libdraco-dev libmeshoptimizer-dev libstb-dev libcpp-httplib-dev libzip-dev
+    libsqlite3-dev libxxhash-dev
     libepoxy-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
     libgtest-dev
 )

@@ -103,8 +103,7 @@ Result<void> place_output(BatchRow& row, const std::string& folder) {
 }
 
 void recover(BatchRow& row, const std::string& folder) {
-    const bool is_lost = row.state == State::kRunning ||
-                         (row.state == State::kDone && !place_output(row, folder).ok());
+    const bool is_lost = row.state == State::kRunning || (row.state == State::kDone && !place_output(row, folder).ok());
     if (!is_lost) return;
     remove_partials_of(output_path(folder, row.name));
     row.state = State::kWaiting;

@@ -20,8 +20,8 @@ double now_since_1970();  // seconds
 using RowsByName = std::map<std::string, BatchRow>;
 
 struct FolderRows {
-    RowsByName rows;                // of each name the row that changed last
-    std::vector<std::string> busy;  // manifests that a process has open
+    RowsByName rows;                  // of each name the row that changed last
+    std::vector<std::string> busy;    // manifests that a process has open
     std::vector<std::string> broken;  // that cannot be read, with the reason
 };
 // Reads all manifests of the folder but `except`. Tries busy ones again for two seconds, because readers keep each other

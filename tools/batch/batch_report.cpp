@@ -87,7 +87,8 @@ std::string table_row(const BatchRow& row) {
     text += cell("bytes", std::to_string(figures.bytes), with_thousands(figures.bytes));
     text += figures.psnr ? cell("PSNR", decimal(*figures.psnr, 4), decimal(*figures.psnr, 2) + " dB")
                          : cell("PSNR", "1e9", "exact");
-    const double bits = figures.triangles > 0 ? 8.0 * static_cast<double>(figures.bytes) / static_cast<double>(figures.triangles) : 0;
+    const double bits =
+        figures.triangles > 0 ? 8.0 * static_cast<double>(figures.bytes) / static_cast<double>(figures.triangles) : 0;
     text += cell("bits a triangle", decimal(bits, 4), decimal(bits, 2));
     text += cell("folded", std::to_string(figures.folded), with_thousands(figures.folded));
     text += cell("time", decimal(figures.seconds, 4), decimal(figures.seconds, 1) + " s");
@@ -124,7 +125,8 @@ std::string batch_html(const BatchPage& page) {
     std::string text =
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>gim batch: " +
-        with_thousands(page.rows.size()) + " files</title>\n<style>" + kBatchStyle + "</style>\n</head>\n<body>\n<h1>gim batch</h1>\n";
+        with_thousands(page.rows.size()) + " files</title>\n<style>" + kBatchStyle +
+        "</style>\n</head>\n<body>\n<h1>gim batch</h1>\n";
     text += facts(page);
     for (const std::string& note : page.notes) text += "<p>" + html_text(note) + "</p>\n";
     text += failures(page.rows);

@@ -11,12 +11,12 @@ namespace gim {
 
 struct BatchFigures {
     uint64_t input_bytes = 0;
-    uint64_t bytes = 0;            // of the output
-    uint64_t triangles = 0;        // of the input
-    std::optional<double> psnr;    // dB; nothing if the surfaces are equal
-    double max_error = 0;          // object units
-    double seconds = 0;            // from reading the input to the end of the encode
-    uint64_t folded = 0;           // triangles
+    uint64_t bytes = 0;          // of the output
+    uint64_t triangles = 0;      // of the input
+    std::optional<double> psnr;  // dB; nothing if the surfaces are equal
+    double max_error = 0;        // object units
+    double seconds = 0;          // from reading the input to the end of the encode
+    uint64_t folded = 0;         // triangles
     std::string layout;
 };
 
@@ -35,13 +35,13 @@ struct BatchRow {
     std::string name, path;  // BatchItem
     State state = State::kWaiting;
     BatchRecipe recipe;
-    std::string owner;       // host and process that began it last
-    double since = 0;        // seconds since 1970: when the state was entered
-    std::string reason;      // kFailed
-    std::string partial;     // kDone: the file that has yet to take the output's name; empty: it has it
-    uint32_t encodes = 0;    // how often this input was encoded to the end
-    BatchFigures figures;    // kDone
-    Bytes thumbnail;         // kDone: PNG of the decoded surface; may be empty
+    std::string owner;     // host and process that began it last
+    double since = 0;      // seconds since 1970: when the state was entered
+    std::string reason;    // kFailed
+    std::string partial;   // kDone: the file that has yet to take the output's name; empty: it has it
+    uint32_t encodes = 0;  // how often this input was encoded to the end
+    BatchFigures figures;  // kDone
+    Bytes thumbnail;       // kDone: PNG of the decoded surface; may be empty
 };
 
 // "waiting", "running", "done", "failed"

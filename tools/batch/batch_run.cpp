@@ -25,8 +25,8 @@ EncodeTask BatchRun::task_of(const BatchRow& row) const {
     EncodeTask task = {command_.encode, {}, command_.thumbnail};
     task.command.input = row.path == "-" ? "./-" : row.path;
     task.command.output = output_path(command_.folder, row.name);
-    const bool is_current = row.state == State::kDone && row.recipe.options == command_.options &&
-                            row.recipe.program == batch_program();
+    const bool is_current =
+        row.state == State::kDone && row.recipe.options == command_.options && row.recipe.program == batch_program();
     if (is_current) task.known_hash = row.recipe.hash;
     return task;
 }

@@ -27,9 +27,8 @@ double decades(uint64_t bytes) { return std::log10(static_cast<double>(bytes)); 
 class Scatter {
   public:
     explicit Scatter(const std::vector<const BatchRow*>& rows) : rows_(rows) {
-        const auto [few, many] = std::minmax_element(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
-            return a->figures.bytes < b->figures.bytes;
-        });
+        const auto [few, many] = std::minmax_element(
+            rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->figures.bytes < b->figures.bytes; });
         const auto [worst, best] = std::minmax_element(
             rows.begin(), rows.end(), [](const auto* a, const auto* b) { return *a->figures.psnr < *b->figures.psnr; });
         // At least one step each way, so that one dot lies in the middle.
@@ -40,7 +39,8 @@ class Scatter {
     std::string svg() const {
         std::string text = "<svg viewBox=\"0 0 " + decimal(kWidth, 0) + " " + decimal(kHeight, 0) +
                            "\" role=\"img\" aria-label=\"Bytes of each file against its PSNR\">\n";
-        for (int power = static_cast<int>(bytes_.low); power <= static_cast<int>(bytes_.high); ++power) text += column(power);
+        for (int power = static_cast<int>(bytes_.low); power <= static_cast<int>(bytes_.high); ++power)
+            text += column(power);
         const double step = psnr_.high - psnr_.low > 40 ? 10 : 5;
         for (double level = psnr_.low; level <= psnr_.high; level += step) text += line(level);
         text += label(kLeft, 18, "start", "PSNR in dB");
@@ -77,7 +77,8 @@ class Scatter {
         for (const char* layout : kLayouts) {
             const auto has_layout = [&](const BatchRow* row) { return row->figures.layout == layout; };
             if (std::none_of(rows_.begin(), rows_.end(), has_layout)) continue;
-            text += std::string("<circle class=\"") + layout + "\" cx=\"" + decimal(place, 1) + "\" cy=\"14\" r=\"5\"/>\n";
+            text +=
+                std::string("<circle class=\"") + layout + "\" cx=\"" + decimal(place, 1) + "\" cy=\"14\" r=\"5\"/>\n";
             text += label(place + 10, 18, "start", layout);
             place -= 80;
         }

@@ -17,9 +17,9 @@
 namespace gim {
 
 struct EncodeTask {
-    EncodeCommand command;     // with its names; the output's folder need not be there
-    std::string known_hash;    // if the input still has it, nothing is encoded; empty: encode
-    uint32_t thumbnail = 96;   // pixels per side; 0: none
+    EncodeCommand command;    // with its names; the output's folder need not be there
+    std::string known_hash;   // if the input still has it, nothing is encoded; empty: encode
+    uint32_t thumbnail = 96;  // pixels per side; 0: none
 };
 
 struct EncodeOutcome {

@@ -7,7 +7,7 @@
 namespace gim {
 namespace {
 
-constexpr int kFormat = 1;           // of the table, in the file's user_version
+constexpr int kFormat = 1;       // of the table, in the file's user_version
 constexpr int kPatience = 2000;  // ms to wait for those who only read
 
 constexpr const char* kTable =
@@ -208,8 +208,8 @@ Result<std::optional<Manifest>> Manifest::open_to_read(const std::string& path) 
 }
 
 Result<void> Manifest::put(const BatchRow& row) {
-    const std::string sql = std::string("INSERT OR REPLACE INTO files (") + kColumns +
-                            ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    const std::string sql =
+        std::string("INSERT OR REPLACE INTO files (") + kColumns + ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
     sqlite3_stmt* raw = nullptr;
     if (sqlite3_prepare_v2(database_.get(), sql.c_str(), -1, &raw, nullptr) != SQLITE_OK)
         return failure("cannot write the manifest");
