@@ -18,15 +18,15 @@ namespace gim::test {
 // Small and quick to encode.
 inline std::vector<std::string> batch_arguments(const std::string& inputs, const std::string& out,
                                                 const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"batch", inputs,      out,  "--layout", "gim", "--size",
-                                          "17",    "--quality", "40", "--quiet"};
+    std::vector<std::string> arguments = {"batch",  inputs, out,         "--layout", "gim",
+                                          "--size", "17",   "--quality", "40",       "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
 
-// A sphere of 162 vertices or so, each of another shape.
+// A sphere of 56 vertices, each of another shape.
 inline TriangleMesh dented_sphere(uint32_t number) {
-    TriangleMesh mesh = corpus::corpus().named("icosphere-2").mesh();
+    TriangleMesh mesh = corpus::corpus().named("sphere-108").mesh();
     for (auto& p : mesh.positions) {
         p[0] *= 1 + 0.01 * (number % 20);
         p[1] *= 1 + 0.02 * (number / 20);
@@ -48,7 +48,8 @@ inline std::vector<std::string> files_below(const std::string& folder, const std
     namespace fs = std::filesystem;
     std::vector<std::string> found;
     std::error_code failure;
-    for (fs::recursive_directory_iterator entry(folder, failure), last; !failure && entry != last; entry.increment(failure)) {
+    for (fs::recursive_directory_iterator entry(folder, failure), last; !failure && entry != last;
+         entry.increment(failure)) {
         const std::string name = entry->path().lexically_relative(folder).string();
         if (name.ends_with(end)) found.push_back(name);
     }

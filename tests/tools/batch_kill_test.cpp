@@ -17,7 +17,8 @@ using std::chrono::milliseconds;
 
 bool has_ended(pid_t process) {
     siginfo_t info = {};
-    return ::waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == process;
+    return ::waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == process;
 }
 
 // Waits until the folder has so many outputs, or the program has ended.
@@ -134,7 +135,8 @@ TEST_F(BatchKill, AnEncoderThatIsKilledIsAFailureOfItsInputAlone) {
     EXPECT_EQ(count_results(text, "encoded"), 29U);
     ASSERT_EQ(count_results(text, "failed"), 1U);
     for (const auto& line : log_lines(text)) {
-        if (line.at("result") == "failed") EXPECT_NE(line.at("reason").get<std::string>().find("signal 9"), std::string::npos);
+        if (line.at("result") == "failed")
+            EXPECT_NE(line.at("reason").get<std::string>().find("signal 9"), std::string::npos);
     }
     EXPECT_EQ(count_partial_files(out), 0U);
     EXPECT_EQ(wait_for(start()), 0);

@@ -37,7 +37,8 @@ TEST(BatchList, AFolderGivesItsMeshesBelowIt) {
                              ".hidden/k.ply", ".l.ply", "folder.ply/m.ply"})
         save(folder.file(name), "");
     const std::vector<BatchItem> items = list_of(folder.path());
-    EXPECT_EQ(names_of(items), (Names{"a.obj", "a.ply", "b/c/d.STL", "b/e.glb", "b/f.gltf", "folder.ply/m.ply", "g.off"}));
+    EXPECT_EQ(names_of(items),
+              (Names{"a.obj", "a.ply", "b/c/d.STL", "b/e.glb", "b/f.gltf", "folder.ply/m.ply", "g.off"}));
     for (const BatchItem& item : items) EXPECT_TRUE(fs::exists(item.path)) << item.path;
     EXPECT_EQ(names_of(list_of(folder.path() + "/")), names_of(items));
 }

@@ -88,7 +88,8 @@ TEST(BatchReport, HasARowForEachInput) {
     const std::string body = html.substr(html.find("<tbody>"));
     EXPECT_EQ(count(body, "<tr>"), page.rows.size());
     EXPECT_EQ(count(body, "<td"), page.rows.size() * 10);
-    for (const char* state : {">done<", ">failed<", ">running<", ">waiting<"}) EXPECT_GE(count(body, state), 1U) << state;
+    for (const char* state : {">done<", ">failed<", ">running<", ">waiting<"})
+        EXPECT_GE(count(body, state), 1U) << state;
 }
 
 TEST(BatchReport, NamesAndReasonsAreText) {

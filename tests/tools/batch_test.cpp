@@ -44,7 +44,7 @@ TEST_F(Batch, KeepsWhatIsDoneAndDoesAgainWhatChanged) {
 
 TEST_F(Batch, FilesOfOneStemKeepTheirExtensions) {
     fs::create_directories(meshes);
-    save_corpus_mesh("icosphere-2", meshes + "/a.obj");
+    save_corpus_mesh("sphere-108", meshes + "/a.obj");
     save(meshes + "/a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
     EXPECT_EQ(run().status, 0);
     EXPECT_EQ(files_below(out, ".gim"), (std::vector<std::string>{"a.obj.gim", "a.off.gim"}));
@@ -52,13 +52,14 @@ TEST_F(Batch, FilesOfOneStemKeepTheirExtensions) {
 
 TEST_F(Batch, BadInputsAreListedAndStopNothing) {
     fs::create_directories(meshes + "/folder.ply");
-    save_corpus_mesh("icosphere-2", meshes + "/good.obj");
+    save_corpus_mesh("sphere-108", meshes + "/good.obj");
     save(meshes + "/empty.ply", "");
     save(meshes + "/text.obj", "this is no mesh\n");
     save(meshes + "/cut.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n");
-    save(meshes + "/huge.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
-                               "property float y\nproperty float z\nelement face 4000000000\n"
-                               "property list uchar int vertex_indices\nend_header\n");
+    save(meshes + "/huge.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+         "property float y\nproperty float z\nelement face 4000000000\n"
+         "property list uchar int vertex_indices\nend_header\n");
     save(meshes + "/nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     save(meshes + "/flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     save(meshes + "/no-buffer.gltf",
@@ -66,8 +67,9 @@ TEST_F(Batch, BadInputsAreListedAndStopNothing) {
     fs::create_symlink("gone.ply", meshes + "/dangling.ply");
     ::mkfifo((meshes + "/pipe.ply").c_str(), 0600);
     std::string list;
-    const std::vector<std::string> bad = {"empty.ply", "text.obj", "cut.ply",        "huge.ply",     "nan.obj", "flat.obj",
-                                          "folder.ply", "pipe.ply", "no-buffer.gltf", "dangling.ply", "missing.stl"};
+    const std::vector<std::string> bad = {"empty.ply",      "text.obj",     "cut.ply",    "huge.ply",
+                                          "nan.obj",        "flat.obj",     "folder.ply", "pipe.ply",
+                                          "no-buffer.gltf", "dangling.ply", "missing.stl"};
     for (const std::string& name : bad) list += meshes + "/" + name + "\n";
     list += meshes + "/good.obj\n";
     save(folder.file("list"), list);
@@ -77,7 +79,8 @@ TEST_F(Batch, BadInputsAreListedAndStopNothing) {
     EXPECT_EQ(outcome.status, 1);
     std::map<std::string, std::string> reasons;
     for (const auto& line : log_lines(outcome.out)) {
-        if (line.at("result") == "failed") reasons[fs::path(line.at("input").get<std::string>()).filename()] = line.at("reason");
+        if (line.at("result") == "failed")
+            reasons[fs::path(line.at("input").get<std::string>()).filename()] = line.at("reason");
     }
     EXPECT_EQ(reasons.size(), bad.size());
     for (const std::string& name : bad) EXPECT_GT(reasons[name].size(), 10U) << name;
@@ -92,7 +95,7 @@ TEST_F(Batch, ARepairedInputIsDoneByTheNextRun) {
     fs::create_directories(meshes);
     save(meshes + "/a.obj", "nothing\n");
     EXPECT_EQ(run().status, 1);
-    save_corpus_mesh("icosphere-2", meshes + "/a.obj");
+    save_corpus_mesh("sphere-108", meshes + "/a.obj");
     const Outcome outcome = run();
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(count_results(outcome.out, "encoded"), 1U);
@@ -137,7 +140,7 @@ TEST_F(Batch, OneShardRunsOnceAtATime) {
 
 TEST_F(Batch, NoOutputReplacesAnInput) {
     fs::create_directories(meshes);
-    save_corpus_mesh("icosphere-2", meshes + "/a.obj");
+    save_corpus_mesh("sphere-108", meshes + "/a.obj");
     save(meshes + "/a.obj.gim", "an image");
     save(folder.file("list"), meshes + "/a.obj\n" + meshes + "/a.obj.gim\n");
     const Outcome outcome = gim(batch_arguments(folder.file("list"), "/"));
@@ -148,7 +151,8 @@ TEST_F(Batch, NoOutputReplacesAnInput) {
 
 TEST_F(Batch, WrongUsage) {
     save_many_meshes(meshes, 1);
-    for (const char* shard : {"0/2", "3/2", "1", "1/", "a/b", "1/2/3"}) EXPECT_EQ(run({"--shard", shard}).status, 2) << shard;
+    for (const char* shard : {"0/2", "3/2", "1", "1/", "a/b", "1/2/3"})
+        EXPECT_EQ(run({"--shard", shard}).status, 2) << shard;
     EXPECT_EQ(run({"--psnr", "60"}).status, 2) << "two rates";
     EXPECT_EQ(run({"--jobs", "0"}).status, 2);
     EXPECT_EQ(gim({"batch", folder.file("missing"), out}).status, 1);
@@ -169,7 +173,8 @@ TEST_F(Batch, AFullLogIsAFailure) {
 TEST_F(Batch, TheSummaryCountsAndNamesFailures) {
     save_many_meshes(meshes, 2);
     save(meshes + "/bad.ply", "");
-    std::vector<std::string> arguments = {"batch", meshes, out, "--layout", "gim", "--size", "17", "--log", folder.file("log")};
+    std::vector<std::string> arguments = {"batch",  meshes, out,     "--layout",        "gim",
+                                          "--size", "17",   "--log", folder.file("log")};
     const Outcome outcome = gim(arguments);
     EXPECT_EQ(outcome.status, 1);
     EXPECT_NE(outcome.out.find("files           3\n"), std::string::npos) << outcome.out;
