@@ -35,6 +35,9 @@ readonly GIM_CROSS_PACKAGES=(
     gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
 )
 
+# Of `tools/test.sh cluster`.
+readonly GIM_CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge python3)
+
 # Of `tools/test.sh web`, besides those of tools/npm.sh.
 readonly GIM_WEB_PACKAGES=(g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev)
 
