@@ -1,5 +1,7 @@
 // The command line of gim batch. The help texts are the manual.
+#include <algorithm>
 #include <charconv>
+#include <map>
 #include <memory>
 #include <thread>
 #ifdef __linux__
@@ -44,7 +46,8 @@ CLI::Validator shard_validator() {
 struct BatchArguments {
     BatchCommand command;
     std::function<EncodeCommand()> encoding;
-    std::vector<const CLI::Option*> recipe;  // options that change the bytes
+    std::vector<const CLI::Option*> recipe;           // options that change the bytes
+    std::map<const CLI::Option*, std::string> texts;  // as given: CLI11 turns words into numbers
     std::string shard;
     const CLI::Option *jobs = nullptr, *threads = nullptr, *memory = nullptr;
 };
@@ -55,8 +58,7 @@ std::string recipe_of(const BatchArguments& a) {
     for (const CLI::Option* option : a.recipe) {
         if (option->count() == 0) continue;
         text += (text.empty() ? "" : " ") + option->get_name();
-        if (option->get_items_expected_max() == 0) continue;  // a flag
-        for (const std::string& value : option->results()) text += " " + value;
+        if (const auto given = a.texts.find(option); given != a.texts.end()) text += " " + given->second;
     }
     return text;
 }
@@ -94,19 +96,26 @@ void add_batch_options(CLI::App* sub, BatchArguments& a) {
     sub->add_flag("--quiet", c.quiet, "Print no progress and no summary");
 }
 
+// Notes the option and what is given for it.
+void add_to_recipe(BatchArguments& a, CLI::Option* option) {
+    a.recipe.push_back(option);
+    if (option->get_expected_max() == 0) return;  // a flag
+    option->transform([&a, option](const std::string& text) { return a.texts[option] = text; });
+}
+
 void add_encode_options(CLI::App* sub, BatchArguments& a) {
-    const std::vector<const CLI::Option*> before = std::as_const(*sub).get_options();
+    const std::vector<CLI::Option*> before = sub->get_options();
     a.encoding = add_encoding(sub, 1);
     a.threads = sub->get_option("--threads");
     a.memory = sub->get_option("--max-memory");
-    const auto add_recipe = [&](const CLI::App* app) {
-        for (const CLI::Option* option : app->get_options()) {
+    const auto add_all = [&](CLI::App* app) {
+        for (CLI::Option* option : app->get_options()) {
             const bool is_of_batch = std::find(before.begin(), before.end(), option) != before.end();
-            if (!is_of_batch && option != a.threads && option != a.memory) a.recipe.push_back(option);
+            if (!is_of_batch && option != a.threads && option != a.memory) add_to_recipe(a, option);
         }
     };
-    add_recipe(sub);
-    for (const CLI::App* group : std::as_const(*sub).get_subcommands({})) add_recipe(group);
+    add_all(sub);
+    for (CLI::App* group : sub->get_subcommands([](CLI::App*) { return true; })) add_all(group);
 }
 
 }  // namespace
