@@ -121,7 +121,7 @@ Result<Encoding> encode_shard(const BatchCommand& command, const std::vector<Bat
     const Result<BatchCounts> counts = run.run(rows, stop);
     if (!counts.ok()) return counts.error();
     log.end(rows, counts.value());
-    return Encoding{counts.value(), stop.waiting()};
+    return Encoding{counts.value(), counts.value().left > 0 ? stop.waiting() : 0};
 }
 
 }  // namespace
