@@ -20,7 +20,7 @@ make_meshes() {
     "$CORPUS" sphere-108 "$work/sphere.ply"
     for ((i = 1; i <= MESHES; ++i)); do
         # Each has another first coordinate, so no two files have the same bytes.
-        awk -v scale="1.$i" 'NF == 3 && !/[a-z]/ { $1 *= scale } { print }' "$work/sphere.ply" >"$work/meshes/$i.ply"
+        awk -v scale="1.$i" 'NF == 3 && /^[-0-9]/ { $1 *= scale } { print }' "$work/sphere.ply" >"$work/meshes/$i.ply"
     done
 }
 
@@ -44,10 +44,10 @@ if ! start_cluster "$work/cluster"; then
     exit 0
 fi
 make_meshes
-readonly OPTIONS=(--layout gim --size 17 --jobs 1)
+readonly OPTIONS=(--layout gim --size 17)
 
 say "An array of $TASKS tasks"
-submit --array=1-$TASKS "$SCRIPT" "$work/meshes" "$work/out" "${OPTIONS[@]}" || die "the job failed: $(cat "$work"/job-*.out)"
+submit --array=1-$TASKS "$SCRIPT" "$work/meshes" "$work/out" "${OPTIONS[@]}" --jobs 1 || die "the job failed: $(cat "$work"/job-*.out)"
 expect "encoded" $MESHES "$(count_results encoded)"
 expect "outputs" $MESHES "$(find "$work/out" -name '*.gim' | wc -l)"
 expect "manifests" $TASKS "$(find "$work/out" -name '*.sqlite' | wc -l)"

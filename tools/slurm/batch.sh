@@ -28,6 +28,9 @@ if [ "${SLURM_ARRAY_TASK_MIN:-1}" != 1 ] || [ "${SLURM_ARRAY_TASK_COUNT:-1}" != 
     exit 2
 fi
 mkdir -p "$2"
+# The processors of the job, unless the options say otherwise. Without a plugin that binds tasks, gim would see all of the node.
+jobs=(--jobs "${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-1}}")
+case " $* " in *" --jobs"* | *" --threads"*) jobs=() ;; esac
 # exec: the signal before the time limit, and that of scancel, reach the program itself.
 exec "${GIM:-gim}" batch "$@" --shard "$SLURM_ARRAY_TASK_ID/${SLURM_ARRAY_TASK_COUNT:-1}" \
-    --log "$2/gim-batch-$SLURM_ARRAY_TASK_ID.jsonl"
+    --log "$2/gim-batch-$SLURM_ARRAY_TASK_ID.jsonl" "${jobs[@]}"
