@@ -30,9 +30,9 @@ Subcommand add_view(CLI::App& app);
 CLI::Validator side_validator(uint32_t least, uint32_t most);
 CLI::Validator finite_range(double low, double high, const std::string& name);
 
-// Adds the options of gim encode that say how a mesh becomes a file. threads: the default of --threads. Once the command
-// line is parsed, the function that is returned gives the command, without names of files. It throws CLI::ParseError if
-// two options contradict each other.
+// Adds the options of gim encode that say how a mesh becomes a file. threads: the default of --threads. Once the
+// command line is parsed, the function that is returned gives the command, without names of files. It throws
+// CLI::ParseError if two options contradict each other.
 std::function<EncodeCommand()> add_encoding(CLI::App* sub, uint32_t threads);
 
 // Adds --format for the format of a mesh that is read.

@@ -24,7 +24,8 @@ class PartialFile {
     PartialFile& operator=(const PartialFile&) = delete;
     ~PartialFile();  // removes the file unless it has its name
 
-    // Writes all bytes of the file. It takes the permissions of an old target, and its owner as far as the system allows.
+    // Writes all bytes of the file. It takes the permissions of an old target, and its owner as far as the system
+    // allows.
     Result<void> write(std::span<const uint8_t> bytes);
     // Replaces the target.
     Result<void> take_name();

@@ -24,12 +24,12 @@ struct FolderRows {
     std::vector<std::string> busy;    // manifests that a process has open
     std::vector<std::string> broken;  // that cannot be read, with the reason
 };
-// Reads all manifests of the folder but `except`. Tries busy ones again for two seconds, because readers keep each other
-// out for a moment.
+// Reads all manifests of the folder but `except`. Tries busy ones again for two seconds, because readers keep each
+// other out for a moment.
 FolderRows read_manifests(const std::string& folder, const std::string& except = {});
 
-// Makes the row true after its process may have been killed at any moment: gives the finished file its name, or makes the
-// row wait again, and removes what was begun.
+// Makes the row true after its process may have been killed at any moment: gives the finished file its name, or makes
+// the row wait again, and removes what was begun.
 void recover(BatchRow& row, const std::string& folder);
 
 // Gives the finished file of a done row its name, unless it has it.

@@ -11,8 +11,8 @@
 
 namespace gim {
 
-// One JSON object a line for each input, at the end of the file --log or on stdout, each written at once. A summary at the
-// end, on stdout, or on stderr if the lines have stdout. On a terminal, also how far the run is.
+// One JSON object a line for each input, at the end of the file --log or on stdout, each written at once. A summary at
+// the end, on stdout, or on stderr if the lines have stdout. On a terminal, also how far the run is.
 class BatchLog {
   public:
     BatchLog(const BatchCommand& command, size_t files);

@@ -14,8 +14,8 @@ struct BatchPage {
     std::vector<std::string> notes;  // what the page does not show, a sentence each
 };
 
-// Figures, a scatter of bytes and PSNR, failures with their reasons, and a table that sorts by any column. Works without
-// network and, but for sorting, without scripts. Follows the reader's choice of light and dark.
+// Figures, a scatter of bytes and PSNR, failures with their reasons, and a table that sorts by any column. Works
+// without network and, but for sorting, without scripts. Follows the reader's choice of light and dark.
 std::string batch_html(const BatchPage& page);
 
 }  // namespace gim

@@ -1,8 +1,8 @@
 // Encodes one input in a process of its own.
 //
-// A process costs a few milliseconds, and gives what threads cannot: an input that crashes the encoder, or that takes all
-// memory, ends its own process, with a reason, and no other. The process is a fork without a new program: the parent has
-// one thread, so all of its state is whole in the child.
+// A process costs a few milliseconds, and gives what threads cannot: an input that crashes the encoder, or that takes
+// all memory, ends its own process, with a reason, and no other. The process is a fork without a new program: the
+// parent has one thread, so all of its state is whole in the child.
 #pragma once
 
 #include <sys/types.h>

@@ -17,8 +17,8 @@ namespace gim {
 
 class Manifest {
   public:
-    // Opens the file for one process alone, and makes it if it is missing. A kill at any time leaves it whole; all that was
-    // put before is there.
+    // Opens the file for one process alone, and makes it if it is missing. A kill at any time leaves it whole; all that
+    // was put before is there.
     static Result<Manifest> open(const std::string& path);
     // Opens an existing file for reading. Nothing if a process has it open.
     static Result<std::optional<Manifest>> open_to_read(const std::string& path);
