@@ -138,8 +138,9 @@ TEST_F(BatchKill, AnEncoderThatIsKilledIsAFailureOfItsInputAlone) {
     EXPECT_EQ(count_results(text, "encoded"), 29U);
     ASSERT_EQ(count_results(text, "failed"), 1U);
     for (const auto& line : log_lines(text)) {
-        if (line.at("result") == "failed")
+        if (line.at("result") == "failed") {
             EXPECT_NE(line.at("reason").get<std::string>().find("signal 9"), std::string::npos);
+        }
     }
     EXPECT_EQ(count_partial_files(out), 0U);
     EXPECT_EQ(wait_for(start()), 0);

@@ -60,7 +60,9 @@ TEST(BatchList, NamesAreDifferentThoughPathsAreNot) {
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), 4U);
     EXPECT_EQ(names, (Names{"a.ply", "a~2.ply", "a~3.ply", "a~4.ply"}));
     for (const BatchItem& item : items) {
-        if (item.name == "a~2.ply") EXPECT_EQ(item.path, "a~2.ply");
+        if (item.name == "a~2.ply") {
+            EXPECT_EQ(item.path, "a~2.ply");
+        }
     }
 }
 
