@@ -26,7 +26,7 @@ th[aria-sort=ascending] button::after { content: " \25B2"; } th[aria-sort=descen
 img { display: block; width: 4rem; height: 4rem; object-fit: contain; border-radius: 0.3rem; }
 .failed { color: var(--bad); }
 li { overflow-wrap: anywhere; }
-svg { width: 100%; max-width: 45rem; height: auto; } svg text { fill: var(--ink); font: 13px system-ui, sans-serif; }
+svg { width: 100%; max-width: 34rem; height: auto; } svg text { fill: var(--ink); font: 13px system-ui, sans-serif; }
 svg .axis { stroke: var(--pale); } svg .grid { stroke: var(--line); }
 .gim { fill: var(--gim); } .mcgim { fill: var(--mcgim); } .tiles { fill: var(--tiles); }
 @media (max-width: 40rem) {

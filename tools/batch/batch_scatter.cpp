@@ -10,7 +10,7 @@
 namespace gim {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 400, kLeft = 56, kRight = 16, kTop = 30, kBottom = 46;  // pixels
+constexpr double kWidth = 400, kHeight = 300, kLeft = 40, kRight = 32, kTop = 30, kBottom = 46;  // pixels
 constexpr std::array<const char*, 3> kLayouts = {"gim", "mcgim", "tiles"};
 
 struct Range {
