@@ -9,7 +9,7 @@ namespace gim {
 
 namespace {
 
-// Charts of fewer samples have more border than inside.
+// Charts of fewer than half of these samples are not tried.
 constexpr uint32_t kLeastSamplesToHalve = 8192;
 
 EncodeOptions halved(EncodeOptions options) {
@@ -46,27 +46,25 @@ std::vector<EncodeOptions> size_variants(const EncodeOptions& options) {
 
 namespace {
 
-// Halves as long as that gives a better file.
-Result<Encoded> best_of_halves(const CodingRuns& runs, EncodeOptions options, Result<Encoded> best,
-                               bool may_end_early) {
-    const RateTarget rate = options.rate;
+// Halves as long as that gives a better file, and puts that into `best`. Returns whether there was one.
+bool try_halves(const CodingRuns& runs, EncodeOptions options, bool may_end_early, Result<Encoded>& best) {
+    bool any = false;
     while (is_large(options)) {
         options = halved(options);
         auto half = runs.code(options, may_end_early ? contest_with(best) : Contest{});
-        if (!improves(half, best, rate)) break;
+        if (!improves(half, best, options.rate)) break;
         best = std::move(half);
+        any = true;
     }
-    return best;
+    return any;
 }
 
-// Brief fits of charts are too far from full ones to tell who is sure to lose. So each size is coded to its end, but the
-// largest one only if a quarter of it is not better than the half.
+// Brief fits of charts are too far from full ones to tell who is sure to lose. So each number of samples is coded to its
+// end, but all of them only if a quarter is not better than the half.
 Result<Encoded> best_of_samples(const CodingRuns& runs, const EncodeOptions& whole) {
-    EncodeOptions options = halved(whole);
-    auto best = runs.code(options, {});
-    const uint64_t of_half = best.ok() ? best.value().report.samples : 0;
-    best = best_of_halves(runs, options, std::move(best), false);
-    if (best.ok() && best.value().report.samples != of_half) return best;
+    const EncodeOptions half = halved(whole);
+    auto best = runs.code(half, {});
+    if (try_halves(runs, half, false, best)) return best;
     auto of_whole = runs.code(whole, {});
     return improves(of_whole, best, whole.rate) ? std::move(of_whole) : std::move(best);
 }
@@ -76,11 +74,12 @@ Result<Encoded> best_of_samples(const CodingRuns& runs, const EncodeOptions& who
 Result<Encoded> best_of_sizes(const CodingRuns& runs, const EncodeOptions& whole) {
     if (!may_halve(whole)) return runs.code(whole, {});
     if (whole.layout == Layout::kMcgim) return best_of_samples(runs, whole);
-    EncodeOptions options = halved(whole);
-    auto best = runs.code(options, {0, true});
+    const EncodeOptions half = halved(whole);
+    auto best = runs.code(half, {0, true});
     auto of_whole = runs.code(whole, contest_with(best));
     if (!best.ok() || improves(of_whole, best, whole.rate)) return of_whole;
-    return best_of_halves(runs, std::move(options), std::move(best), true);
+    try_halves(runs, half, true, best);
+    return best;
 }
 
 }  // namespace gim

@@ -12,8 +12,9 @@ namespace gim {
 std::vector<EncodeOptions> size_variants(const EncodeOptions& options);
 
 // Codes the size that is asked for. If the options allow smaller sizes and the target is coarse, also tries the half, and
-// goes on as long as halving makes the file better. Returns the best file. The half runs first, because it is faster and
-// chooses the cuts of squares. A size that is sure to lose ends early (contest.h).
+// goes on as long as halving makes the file better. Returns the best file. The half runs first: it is faster, it chooses
+// the cuts of squares, and if a quarter is better still, charts are not coded in full size. A side of squares that is sure
+// to lose ends early (contest.h).
 Result<Encoded> best_of_sizes(const CodingRuns& runs, const EncodeOptions& options);
 
 }  // namespace gim

@@ -113,8 +113,8 @@ case "${1:-}" in
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
     cross) test_cross && exit 0 ;;
-    cluster) test_cluster && exit 0 || exit 1 ;;
-    web) (test_web) && exit 0 ;;
+    cluster) (test_cluster) || exit 1; exit 0 ;;
+    web) (test_web) || exit 1; exit 0 ;;
     *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross | cluster]" ;;
 esac
 

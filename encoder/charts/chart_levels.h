@@ -30,9 +30,9 @@ struct ChartLevels {
     MultiChartImage image;  // the charts in their rectangle
     std::vector<ChartBox> charts;
     std::vector<uint32_t> mates;                // per path, chart after chart
-    std::vector<std::vector<Vec3>> positions;   // per chart, its box row by row; zero where undefined
-    bool is_extended = false;                   // undefined samples have values that are cheap to code
+    std::vector<std::vector<Vec3>> positions;   // per chart, its box row by row
     std::vector<std::vector<uint8_t>> defined;  // per chart, in the same order
+    bool is_extended = false;                   // positions where undefined: false: zero; true: cheap to code
     std::vector<LevelBorders> levels;           // finest first; at least one
 
     uint64_t defined_count() const;

@@ -12,6 +12,7 @@
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/file_units.h"
 #include "encoder/fit/fit_coded.h"
+#include "encoder/fit/fit_strength.h"
 #include "encoder/fit/parts_codec.h"
 #include "encoder/planes/rectangle_texels.h"
 
@@ -31,8 +32,7 @@ std::vector<CodedPart> parts_of(const ChartLevels& charts) {
 class ChartsLayout final : public LayoutImages {
   public:
     ChartsLayout(ChartLevels charts, const Mesh& mesh, const EncodeOptions& options)
-        : charts_(std::move(charts)),
-          is_fitted_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
+        : charts_(std::move(charts)), is_fitted_(is_fitted_to_codec(options)) {
         if (options.rate.kind == RateTarget::Kind::kLossless) return;
         const MakeFitCodec make = [this](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
             const auto ramps = std::make_shared<const ChartRamps>(charts_);

@@ -24,6 +24,11 @@ inline std::optional<FitOptions::Strength> fit_strength(const EncodeOptions& opt
                                                             : FitOptions::Strength::kStiff;
 }
 
+// Whether the images of a file are fitted to the codec and its quantizer (fit_coded.h).
+inline bool is_fitted_to_codec(const EncodeOptions& options) {
+    return options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless;
+}
+
 // The fit of an image as it is sampled. Returns nothing if no fit is wanted.
 inline std::optional<FitOptions> first_fit(const EncodeOptions& options) {
     const auto strength = fit_strength(options);

@@ -110,10 +110,12 @@ std::vector<Vec3> PartsCodec::decoded(const std::vector<float>& image, const Uni
     });
     if (mends_folds) repair_.repair(bands, units, kRepairBetween);
     const CodedImage::Levels levels = repair_.levels(bands, units);
-    const auto middle = static_cast<float>(1 << (units.bits - 1));
-    for (size_t p = 0; p < parts_.size(); ++p) {
-        boxes_[p] = levels[p].back();
-        for (float& v : boxes_[p]) v += middle;
+    if (open_.close) {
+        const auto middle = static_cast<float>(1 << (units.bits - 1));
+        for_all_parts(parts_, [&](size_t p, const CodedPart&) {
+            boxes_[p] = levels[p].back();
+            for (float& v : boxes_[p]) v += middle;
+        });
     }
     return repair_.samples(levels, units);
 }

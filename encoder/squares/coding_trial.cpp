@@ -1,5 +1,4 @@
 #include "encoder/squares/coding_trial.h"
-#include "encoder/squares/square_codec.h"
 
 #include <cmath>
 
@@ -7,6 +6,7 @@
 #include "encoder/code/file_units.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/fit/fit_coded.h"
+#include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 
 namespace gim {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
+#include "encoder/fit/fit_strength.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/square_texels.h"
 #include "encoder/squares/write_squares.h"
@@ -19,8 +20,7 @@ namespace {
 class SquaresLayout final : public LayoutImages {
   public:
     SquaresLayout(Squares squares, const EncodeOptions& options)
-        : squares_(std::move(squares)),
-          is_lossy_fit_(options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless) {
+        : squares_(std::move(squares)), is_lossy_fit_(is_fitted_to_codec(options)) {
         if (options.rate.kind != RateTarget::Kind::kLossless) make_fits(options.seed);
     }
 

@@ -6,6 +6,7 @@
 
 #include "encoder/code/file_units.h"
 #include "encoder/fit/fit_coded.h"
+#include "encoder/fit/fit_strength.h"
 #include "encoder/tiles/sample_tiles.h"
 #include "encoder/tiles/tile_codec.h"
 #include "encoder/tiles/tile_plane.h"
@@ -107,8 +108,7 @@ class TilesLayout final : public LayoutImages {
 Result<std::unique_ptr<LayoutImages>> tiles_layout(MadeTiles made, const Mesh& mesh, const EncodeOptions& options) {
     GIM_TRY(sample_at, samples_of_atlas(made.tiles));
     auto layout = std::make_unique<TilesLayout>(std::move(made), std::move(sample_at));
-    if (options.fit == FitStrength::kAuto && options.rate.kind != RateTarget::Kind::kLossless)
-        GIM_CHECK(layout->make_fit(mesh, options.seed));
+    if (is_fitted_to_codec(options)) GIM_CHECK(layout->make_fit(mesh, options.seed));
     return std::unique_ptr<LayoutImages>(std::move(layout));
 }
 
