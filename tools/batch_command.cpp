@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "tools/batch/batch_folder.h"
 #include "tools/batch/batch_list.h"
@@ -25,13 +26,16 @@ using State = BatchRow::State;
 
 constexpr int kSignalBase = 128;  // of the exit status, as shells have it
 
-// No output may take the place of an input.
-std::optional<FileError> find_replaced_input(const std::vector<BatchItem>& items, const std::string& folder) {
+// No output may take the place of an input, and no line of the log may go into one.
+std::optional<FileError> find_replaced_input(const std::vector<BatchItem>& items, const BatchCommand& command) {
     std::error_code unknown;
     std::map<fs::path, std::string> inputs;
     for (const BatchItem& item : items) inputs[fs::weakly_canonical(item.path, unknown)] = item.path;
+    if (command.inputs != "-") inputs[fs::weakly_canonical(command.inputs, unknown)] = command.inputs;
+    if (!command.log.empty() && inputs.contains(fs::weakly_canonical(command.log, unknown)))
+        return FileError{command.log, {Stage::kWrite, "this is an input; choose another --log"}};
     for (const BatchItem& item : items) {
-        const auto found = inputs.find(fs::weakly_canonical(output_path(folder, item.name), unknown));
+        const auto found = inputs.find(fs::weakly_canonical(output_path(command.folder, item.name), unknown));
         if (found == inputs.end()) continue;
         return FileError{
             found->second,
@@ -64,9 +68,17 @@ Result<RowsByName> known_rows(const Manifest& manifest, const FolderRows& others
     return known;
 }
 
-BatchPage page_of(const BatchCommand& command, const std::vector<BatchItem>& items, const FolderRows& found) {
+// Runs with other options may have made a part of the outputs.
+std::vector<std::string> options_of(const std::vector<BatchRow>& rows) {
+    std::set<std::string> options;
+    for (const BatchRow& row : rows) {
+        if (row.state == State::kDone) options.insert(row.recipe.options);
+    }
+    return {options.begin(), options.end()};
+}
+
+BatchPage page_of(const std::vector<BatchItem>& items, const FolderRows& found) {
     BatchPage page;
-    page.options = command.options;
     for (const BatchItem& item : items) {
         const auto row = found.rows.find(item.name);
         if (row != found.rows.end()) {
@@ -78,8 +90,10 @@ BatchPage page_of(const BatchCommand& command, const std::vector<BatchItem>& ite
         waiting.path = item.path;
         page.rows.push_back(waiting);
     }
+    page.options = options_of(page.rows);
     if (!found.busy.empty())
-        page.notes.push_back(std::to_string(found.busy.size()) + " other shards run. What they did is not here yet.");
+        page.notes.push_back("Other shards still run: " + std::to_string(found.busy.size()) +
+                             ". What they did is not here yet.");
     for (const std::string& fault : found.broken) page.notes.push_back(fault);
     return page;
 }
@@ -89,7 +103,7 @@ std::optional<FileError> write_report(const BatchCommand& command, const std::ve
     const std::string path = command.folder + "/report.html";
     for (std::vector<std::string> busy;;) {
         const FolderRows found = read_manifests(command.folder);
-        const std::string html = batch_html(page_of(command, items, found));
+        const std::string html = batch_html(page_of(items, found));
         const Result<void> written = write_file(path, {reinterpret_cast<const uint8_t*>(html.data()), html.size()});
         if (!written.ok()) return FileError{path, written.error()};
         busy = found.busy;
@@ -99,6 +113,16 @@ std::optional<FileError> write_report(const BatchCommand& command, const std::ve
         });
         if (!has_one_ended) return {};
     }
+}
+
+// Shards of one split share no input. Those of two splits do, so they must not run at a time.
+std::optional<Error> running_split(const FolderRows& others, uint32_t shards) {
+    for (const std::string& path : others.busy) {
+        if (!is_of_other_split(path, shards)) continue;
+        return Error{Stage::kWrite, "a gim batch with another --shard I/N encodes to this folder and has " + path +
+                                        " open; wait until it ends, or stop it"};
+    }
+    return {};
 }
 
 struct Encoding {
@@ -112,9 +136,11 @@ Result<Encoding> encode_shard(const BatchCommand& command, const std::vector<Bat
     Result<Manifest> manifest = Manifest::open(path);
     if (!manifest.ok()) return manifest.error();
     const FolderRows others = read_manifests(command.folder, path);
+    if (const auto other = running_split(others, command.shards)) return *other;
     Result<RowsByName> known = known_rows(manifest.value(), others);
     if (!known.ok()) return known.error();
     std::vector<BatchRow> rows = recovered_rows(items, std::move(known.value()), command.folder);
+    remove_unfinished(rows, command.folder);
     if (const Result<void> put = manifest.value().put_all(rows); !put.ok()) return put.error();
     const StopSignals stop;
     BatchRun run(command, manifest.value(), [&](const BatchEvent& event) { log.add(event); });
@@ -134,7 +160,7 @@ int run_batch(const BatchCommand& command) {
     std::error_code failure;
     fs::create_directories(command.folder, failure);
     if (failure) return report_error(command.folder, {Stage::kWrite, "cannot make the folder: " + failure.message()});
-    if (const auto clash = find_replaced_input(items.value(), command.folder)) return report_error(*clash);
+    if (const auto clash = find_replaced_input(items.value(), command)) return report_error(*clash);
 
     Encoding done;
     if (!command.report_only) {

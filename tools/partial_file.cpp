@@ -68,6 +68,12 @@ std::string advice(int error) {
 
 }  // namespace
 
+std::optional<std::string> target_of_partial(const std::string& name) {
+    const size_t mark = name.rfind(kMark);
+    if (mark == std::string::npos || mark < 1 || name.front() != '.') return {};
+    return name.substr(1, mark - 1);
+}
+
 void remove_partials_of(const fs::path& target) {
     const std::string begin = "." + target.filename().string() + kMark;
     std::error_code failure;

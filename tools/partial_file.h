@@ -43,6 +43,9 @@ class PartialFile {
     bool is_there_ = false;
 };
 
+// ".NAME.gim-partial-XXXXXX" -> "NAME"; nothing for other names. A long NAME may have been shortened.
+std::optional<std::string> target_of_partial(const std::string& name);
+
 // Removes what killed programs left of this target. No program may be writing it. Finds no names that were shortened.
 void remove_partials_of(const std::filesystem::path& target);
 

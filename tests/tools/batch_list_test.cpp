@@ -1,6 +1,7 @@
 #include "tools/batch/batch_list.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <set>
@@ -34,11 +35,11 @@ TEST(BatchList, AFolderGivesItsMeshesBelowIt) {
     fs::create_directories(folder.file(".hidden"));
     fs::create_directories(folder.file("folder.ply"));
     for (const char* name : {"a.ply", "a.obj", "b/c/d.STL", "b/e.glb", "b/f.gltf", "g.off", "h.txt", "i.png", "j.npz",
-                             ".hidden/k.ply", ".l.ply", "folder.ply/m.ply"})
+                             "k.exr", ".hidden/k.ply", ".l.ply", "folder.ply/m.ply"})
         save(folder.file(name), "");
     const std::vector<BatchItem> items = list_of(folder.path());
     EXPECT_EQ(names_of(items),
-              (Names{"a.obj", "a.ply", "b/c/d.STL", "b/e.glb", "b/f.gltf", "folder.ply/m.ply", "g.off"}));
+              (Names{"a.obj", "a.ply", "b/c/d.STL", "b/e.glb", "b/f.gltf", "folder.ply/m.ply", "g.off", "j.npz"}));
     for (const BatchItem& item : items) EXPECT_TRUE(fs::exists(item.path)) << item.path;
     EXPECT_EQ(names_of(list_of(folder.path() + "/")), names_of(items));
 }
@@ -64,6 +65,25 @@ TEST(BatchList, NamesAreDifferentThoughPathsAreNot) {
             EXPECT_EQ(item.path, "a~2.ply");
         }
     }
+}
+
+TEST(BatchList, NamesTheFolderThatCannotBeListed) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may list any folder";
+    const TemporaryFolder folder;
+    fs::create_directories(folder.file("a/closed"));
+    fs::permissions(folder.file("a/closed"), fs::perms::none);
+    const Result<std::vector<BatchItem>> items = list_batch(folder.path());
+    ASSERT_FALSE(items.ok());
+    EXPECT_NE(items.error().message.find("a/closed"), std::string::npos) << items.error().message;
+    fs::permissions(folder.file("a/closed"), fs::perms::owner_all);
+}
+
+TEST(BatchList, AMeshIsNoList) {
+    const TemporaryFolder folder;
+    save(folder.file("a.ply"), "ply\n");
+    const Result<std::vector<BatchItem>> items = list_batch(folder.file("a.ply"));
+    ASSERT_FALSE(items.ok());
+    EXPECT_NE(items.error().message.find("no list"), std::string::npos) << items.error().message;
 }
 
 TEST(BatchList, TellsWhatIsWrongWithAList) {

@@ -27,7 +27,7 @@ BatchRow done_row(const std::string& name) {
 
 BatchPage page_of_all_states() {
     BatchPage page;
-    page.options = "--psnr 60";
+    page.options = {"--psnr 60", ""};
     page.rows = {done_row("a.ply"), done_row("<b>&\"\x01\xFF.ply"), {}, {}, {}};
     page.rows[1].figures.psnr.reset();
     page.rows[1].thumbnail.clear();
@@ -98,6 +98,18 @@ TEST(BatchReport, NamesAndReasonsAreText) {
     EXPECT_NE(html.find("input: &lt;nothing&gt; in it"), std::string::npos);
     EXPECT_EQ(html.find('\x01'), std::string::npos);
     EXPECT_EQ(html.find('\xFF'), std::string::npos);
+}
+
+TEST(BatchReport, TellsAllOptionsThatOutputsWereMadeWith) {
+    const std::string html = batch_html(page_of_all_states());
+    EXPECT_EQ(count(html, "<dt>options</dt>"), 2U);
+    EXPECT_NE(html.find("<code>--psnr 60</code>"), std::string::npos);
+}
+
+TEST(BatchReport, AFailedFileHasNoPictureOfAnEarlierRun) {
+    BatchPage page = page_of_all_states();
+    page.rows[0].state = State::kFailed;
+    EXPECT_EQ(count(batch_html(page), "<img"), 0U);
 }
 
 TEST(BatchReport, PicturesAreInside) {

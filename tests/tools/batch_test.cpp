@@ -138,6 +138,37 @@ TEST_F(Batch, OneShardRunsOnceAtATime) {
     EXPECT_NE(outcome.err.find("another gim batch"), std::string::npos) << outcome.err;
 }
 
+TEST_F(Batch, ShardsOfTwoSplitsDoNotRunAtATime) {
+    save_many_meshes(meshes, 2);
+    ASSERT_EQ(run({"--shard", "1/2"}).status, 0);
+    std::optional<Result<Manifest>> held = Manifest::open(out + "/gim-batch-1-of-2.sqlite");
+    ASSERT_TRUE(held->ok());
+    Outcome outcome = run();
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("another --shard"), std::string::npos) << outcome.err;
+    EXPECT_EQ(files_below(out, ".gim").size(), 1U);
+    outcome = run({"--shard", "2/2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    held.reset();
+    outcome = run();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(count_results(outcome.out, "kept"), 2U);
+}
+
+TEST_F(Batch, TheLogGoesIntoNoInput) {
+    save_many_meshes(meshes, 1);
+    const std::string mesh = meshes + "/0/0.obj", list = folder.file("list");
+    save(list, mesh + "\n");
+    const std::string before = load_text(mesh);
+    for (const std::string& log : {mesh, list}) {
+        const Outcome outcome = gim(batch_arguments(list, out, {"--log", log}));
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_NE(outcome.err.find("this is an input"), std::string::npos) << outcome.err;
+    }
+    EXPECT_EQ(load_text(mesh), before);
+    EXPECT_EQ(load_text(list), mesh + "\n");
+}
+
 TEST_F(Batch, NoOutputReplacesAnInput) {
     fs::create_directories(meshes);
     save_corpus_mesh("sphere-108", meshes + "/a.obj");

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "tools/batch/manifest.h"
@@ -66,6 +67,10 @@ std::string manifest_path(const std::string& folder, uint32_t shard, uint32_t sh
     return folder + "/" + kManifestBegin + std::to_string(shard) + "-of-" + std::to_string(shards) + kManifestEnd;
 }
 
+bool is_of_other_split(const std::string& path, uint32_t shards) {
+    return !path.ends_with("-of-" + std::to_string(shards) + kManifestEnd);
+}
+
 std::string output_path(const std::string& folder, const std::string& name) { return folder + "/" + name + ".gim"; }
 
 std::string this_process() {
@@ -102,13 +107,35 @@ Result<void> place_output(BatchRow& row, const std::string& folder) {
     return {};
 }
 
-void recover(BatchRow& row, const std::string& folder) {
-    const bool is_lost = row.state == State::kRunning || (row.state == State::kDone && !place_output(row, folder).ok());
-    if (!is_lost) return;
-    remove_partials_of(output_path(folder, row.name));
-    row.state = State::kWaiting;
+void forget_output(BatchRow& row) {
+    row.recipe = {};
     row.partial.clear();
+    row.figures = {};
+    row.thumbnail.clear();
+}
+
+void recover(BatchRow& row, const std::string& folder) {
+    const bool has_output = !row.recipe.hash.empty() && place_output(row, folder).ok();
+    if (!has_output) forget_output(row);
+    const bool is_lost = row.state == State::kRunning || (row.state == State::kDone && !has_output);
+    if (!is_lost) return;
+    row.state = State::kWaiting;
     row.since = now_since_1970();
+}
+
+void remove_unfinished(const std::vector<BatchRow>& rows, const std::string& folder) {
+    std::map<fs::path, std::set<std::string>> names;
+    for (const BatchRow& row : rows) {
+        const fs::path output = output_path(folder, row.name);
+        names[folder_of(output)].insert(output.filename().string());
+    }
+    for (const auto& [place, outputs] : names) {
+        std::error_code failure;
+        for (fs::directory_iterator entry(place, failure), end; !failure && entry != end; entry.increment(failure)) {
+            const std::optional<std::string> target = target_of_partial(entry->path().filename().string());
+            if (target && outputs.contains(*target)) ::unlink(entry->path().c_str());
+        }
+    }
 }
 
 }  // namespace gim

@@ -12,6 +12,8 @@ namespace gim {
 
 // "FOLDER/gim-batch-1-of-4.sqlite"
 std::string manifest_path(const std::string& folder, uint32_t shard, uint32_t shards);
+// Tells whether the manifest belongs to a batch of another number of shards.
+bool is_of_other_split(const std::string& path, uint32_t shards);
 std::string output_path(const std::string& folder, const std::string& name);
 // "HOST:PROCESS"
 std::string this_process();
@@ -29,10 +31,16 @@ struct FolderRows {
 FolderRows read_manifests(const std::string& folder, const std::string& except = {});
 
 // Makes the row true after its process may have been killed at any moment: gives the finished file its name, or makes
-// the row wait again, and removes what was begun.
+// the row wait again.
 void recover(BatchRow& row, const std::string& folder);
 
-// Gives the finished file of a done row its name, unless it has it.
+// Removes what killed runs began for these rows. All are recovered, and nothing runs for them.
+void remove_unfinished(const std::vector<BatchRow>& rows, const std::string& folder);
+
+// The output of the row is not there, or is none of ours.
+void forget_output(BatchRow& row);
+
+// Gives the finished file of the row its name, unless it has it. Fails if the output is not the one that the row tells.
 Result<void> place_output(BatchRow& row, const std::string& folder);
 
 }  // namespace gim

@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> kMeshExtensions = {"ply", "obj", "off", "stl", "gltf", "glb"};
+// Of what a folder gives. An .exr may be anybody's texture, so it is only taken from a list.
+constexpr std::array<std::string_view, 7> kExtensions = {"ply", "obj", "off", "stl", "gltf", "glb", "npz"};
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
 bool is_named_as_mesh(const fs::path& path) {
-    return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension_of(path.string())) !=
-           kMeshExtensions.end();
+    return std::find(kExtensions.begin(), kExtensions.end(), extension_of(path.string())) != kExtensions.end();
 }
 
 Error cannot_list(const fs::path& folder, const std::error_code& failure) {
@@ -31,8 +31,9 @@ Result<std::vector<BatchItem>> list_folder(const fs::path& folder) {
     std::vector<BatchItem> items;
     std::error_code failure;
     fs::recursive_directory_iterator entry(folder, failure);
+    fs::path path = folder;  // at a failure: the folder that cannot be entered
     for (; !failure && entry != fs::recursive_directory_iterator(); entry.increment(failure)) {
-        const fs::path& path = entry->path();
+        path = entry->path();
         std::error_code unknown;
         const bool is_folder = entry->is_directory(unknown);
         if (is_hidden(path)) {
@@ -41,7 +42,7 @@ Result<std::vector<BatchItem>> list_folder(const fs::path& folder) {
             items.push_back({path.string(), path.lexically_relative(folder).string()});
         }
     }
-    if (failure) return cannot_list(folder, failure);
+    if (failure) return cannot_list(path, failure);
     return items;
 }
 
@@ -107,6 +108,8 @@ Result<std::vector<BatchItem>> list_batch(const std::string& inputs) {
         Result<std::vector<BatchItem>> found = list_folder(inputs);
         if (!found.ok()) return found.error();
         items = std::move(found.value());
+    } else if (is_named_as_mesh(inputs)) {
+        return Error{Stage::kInput, "this is the name of a mesh, and no list; encode one mesh with gim encode"};
     } else {
         const Result<Bytes> list = read_named(inputs);
         if (!list.ok()) return list.error();

@@ -50,7 +50,8 @@ std::string facts(const BatchPage& page) {
     text += fact("bytes", with_thousands(sum.bytes) + ", from " + with_thousands(sum.input_bytes));
     text += fact("triangles", with_thousands(sum.triangles));
     text += fact("encoding", decimal(sum.seconds, 1) + " s, added up");
-    text += fact("options", page.options.empty() ? "none" : "<code>" + html_text(page.options) + "</code>");
+    for (const std::string& options : page.options)
+        text += fact("options", options.empty() ? "none" : "<code>" + html_text(options) + "</code>");
     return text + "</dl>\n";
 }
 
@@ -69,7 +70,7 @@ std::string cell(const char* label, const std::string& key, const std::string& s
 }
 
 std::string picture(const BatchRow& row) {
-    if (row.thumbnail.empty()) return "<td class=\"picture\"></td>";
+    if (row.thumbnail.empty() || row.state != State::kDone) return "<td class=\"picture\"></td>";
     return "<td class=\"picture\"><img loading=\"lazy\" alt=\"" + html_text("decoded surface of " + row.name) +
            "\" src=\"data:image/png;base64," + base64(row.thumbnail) + "\"></td>";
 }

@@ -9,9 +9,9 @@
 namespace gim {
 
 struct BatchPage {
-    std::string options;             // of this run
-    std::vector<BatchRow> rows;      // one for each input, in order
-    std::vector<std::string> notes;  // what the page does not show, a sentence each
+    std::vector<std::string> options;  // with which the outputs were made; "": none
+    std::vector<BatchRow> rows;        // one for each input, in order
+    std::vector<std::string> notes;    // what the page does not show, a sentence each
 };
 
 // Figures, a scatter of bytes and PSNR, failures with their reasons, and a table that sorts by any column. Works

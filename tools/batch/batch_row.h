@@ -20,7 +20,7 @@ struct BatchFigures {
     std::string layout;
 };
 
-// What a file must have been made from to count as done.
+// What an output was made from.
 struct BatchRecipe {
     std::string hash;     // of the input's bytes, in hexadecimal
     std::string options;  // BatchCommand::options
@@ -34,14 +34,14 @@ struct BatchRow {
 
     std::string name, path;  // BatchItem
     State state = State::kWaiting;
-    BatchRecipe recipe;
+    BatchRecipe recipe;    // of the output that is there, in any state; empty: there is none
     std::string owner;     // host and process that began it last
     double since = 0;      // seconds since 1970: when the state was entered
     std::string reason;    // kFailed
     std::string partial;   // kDone: the file that has yet to take the output's name; empty: it has it
     uint32_t encodes = 0;  // how often this input was encoded to the end
-    BatchFigures figures;  // kDone
-    Bytes thumbnail;       // kDone: PNG of the decoded surface; may be empty
+    BatchFigures figures;  // of the output that is there
+    Bytes thumbnail;       // PNG of that output's surface; may be empty
 };
 
 // "waiting", "running", "done", "failed"

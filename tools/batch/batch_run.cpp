@@ -25,15 +25,14 @@ EncodeTask BatchRun::task_of(const BatchRow& row) const {
     EncodeTask task = {command_.encode, {}, command_.thumbnail};
     task.command.input = row.path == "-" ? "./-" : row.path;
     task.command.output = output_path(command_.folder, row.name);
-    const bool is_current =
-        row.state == State::kDone && row.recipe.options == command_.options && row.recipe.program == batch_program();
+    const bool is_current = row.recipe.options == command_.options && row.recipe.program == batch_program();
     if (is_current) task.known_hash = row.recipe.hash;
     return task;
 }
 
 Result<void> BatchRun::begin(BatchRow& row, std::list<Running>& running) {
     const EncodeTask task = task_of(row);
-    // While a done input is only looked at, its row stays as it is: a kill must not make it count as begun.
+    // While an input with an output is only looked at, its row stays as it is: a kill must not make it count as begun.
     if (task.known_hash.empty()) {
         row.state = State::kRunning;
         row.owner = this_process();
@@ -46,12 +45,11 @@ Result<void> BatchRun::begin(BatchRow& row, std::list<Running>& running) {
     return {};
 }
 
+// An earlier output stays, and the row knows what it was made from: if the input comes back, it need not be made again.
 Result<void> BatchRun::fail(BatchRow& row, const std::string& reason, BatchCounts& counts) {
     row.state = State::kFailed;
     row.reason = reason;
     row.since = now_since_1970();
-    row.figures = {};
-    row.thumbnail.clear();
     ++counts.failed;
     Result<void> put = manifest_.put(row);
     listener_({BatchEvent::Kind::kFailed, row, {}});
@@ -69,9 +67,13 @@ Result<void> BatchRun::end_encoded(BatchRow& row, const EncodeOutcome& outcome, 
     row.owner = this_process();
     row.since = now_since_1970();
     ++row.encodes;
-    if (Result<void> put = manifest_.put(row); !put.ok()) return put;
+    if (Result<void> put = manifest_.put(row); !put.ok()) {
+        remove_partials_of(output_path(command_.folder, row.name));
+        return put;
+    }
     if (const Result<void> placed = place_output(row, command_.folder); !placed.ok()) {
         remove_partials_of(output_path(command_.folder, row.name));
+        forget_output(row);
         return fail(row, "write: " + placed.error().message, counts);
     }
     if (Result<void> put = manifest_.put(row); !put.ok()) return put;
@@ -80,20 +82,29 @@ Result<void> BatchRun::end_encoded(BatchRow& row, const EncodeOutcome& outcome, 
     return {};
 }
 
+Result<void> BatchRun::end_unchanged(BatchRow& row, BatchCounts& counts) {
+    if (row.state != State::kDone) {
+        row.state = State::kDone;
+        row.reason.clear();
+        row.since = now_since_1970();
+        if (Result<void> put = manifest_.put(row); !put.ok()) return put;
+    }
+    ++counts.kept;
+    listener_({BatchEvent::Kind::kKept, row, {}});
+    return {};
+}
+
 Result<void> BatchRun::end(BatchRow& row, const EncodeOutcome& outcome, BatchCounts& counts) {
     switch (outcome.kind) {
         case EncodeOutcome::Kind::kEncoded:
             return end_encoded(row, outcome, counts);
         case EncodeOutcome::Kind::kUnchanged:
-            ++counts.kept;
-            listener_({BatchEvent::Kind::kKept, row, {}});
-            return {};
+            return end_unchanged(row, counts);
         case EncodeOutcome::Kind::kFailed:
         case EncodeOutcome::Kind::kStopped:
             break;
     }
     remove_partials_of(output_path(command_.folder, row.name));
-    row.recipe = {outcome.hash, command_.options, batch_program()};
     return fail(row, outcome.reason, counts);
 }
 

@@ -45,6 +45,7 @@ class BatchRun {
     Result<void> begin(BatchRow& row, std::list<Running>& running);
     Result<void> end(BatchRow& row, const EncodeOutcome& outcome, BatchCounts& counts);
     Result<void> end_encoded(BatchRow& row, const EncodeOutcome& outcome, BatchCounts& counts);
+    Result<void> end_unchanged(BatchRow& row, BatchCounts& counts);
     Result<void> fail(BatchRow& row, const std::string& reason, BatchCounts& counts);
     void wait_for_some(std::list<Running>& running) const;
     Result<void> collect(std::list<Running>& running, const StopSignals& stop, BatchCounts& counts);

@@ -1,8 +1,8 @@
 // The memory of a batch: a SQLite file with one row for each input.
 //
-// Each shard has a file of its own, which it locks as long as it runs. So no two machines write one file, and nothing
-// depends on locks or shared memory across machines, which network file systems do not promise. Other shards, and the
-// report, read the file once its owner has ended.
+// Each shard has a file of its own, which it locks as long as it runs. So no two machines write one file at a time, and
+// nothing depends on shared memory across machines, which network file systems do not have. Other shards, and the
+// report, read the file once its owner has ended. Locks must hold on all machines that share the folder.
 #pragma once
 
 #include <memory>
