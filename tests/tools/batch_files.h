@@ -15,11 +15,14 @@
 
 namespace gim::test {
 
-// Small and quick to encode.
+// The quickest: no search for a cut, no fit.
+inline const std::vector<std::string> kQuickEncode = {"--layout",   "tiles", "--samples", "1000",
+                                                      "--lossless", "--fit", "none"};
+
 inline std::vector<std::string> batch_arguments(const std::string& inputs, const std::string& out,
                                                 const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"batch",  inputs, out,         "--layout", "gim",
-                                          "--size", "17",   "--quality", "40",       "--quiet"};
+    std::vector<std::string> arguments = {"batch", inputs, out, "--quiet"};
+    arguments.insert(arguments.end(), kQuickEncode.begin(), kQuickEncode.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
