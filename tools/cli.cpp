@@ -19,7 +19,7 @@ bool is_option(const std::string& argument) { return argument.size() > 1 && argu
 void explain_several_inputs() {
     std::fputs(
         "gim: encode takes one mesh and makes one file; it does not join meshes to a scene. For several meshes:\n"
-        "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done\n",
+        "  gim batch LIST|DIR OUT_DIR\n",
         stderr);
 }
 
@@ -51,9 +51,9 @@ int run_gim(int argc, const char* const* argv) {
         "Exit status: 0 done, 1 the work failed, 2 wrong usage. Results go to stdout, messages and progress to "
         "stderr.\n"
         "A command that fails leaves no file behind and changes none.");
-    const std::array<Subcommand, 9> subcommands = {add_encode(app), add_decode(app),      add_info(app),
-                                                   add_cut(app),    add_compare(app),     add_render(app),
-                                                   add_emboss(app), add_bench_scene(app), add_view(app)};
+    const std::array<Subcommand, 10> subcommands = {
+        add_encode(app),  add_batch(app),  add_decode(app), add_info(app),        add_cut(app),
+        add_compare(app), add_render(app), add_emboss(app), add_bench_scene(app), add_view(app)};
     int exit_status = 0;
     try {
         app.parse(argc, argv);

@@ -203,14 +203,25 @@ void apply_rate(EncodeArguments& a) {
 void add_file_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option("MESH", a.command.input, "Mesh to read (-: standard input)")->required();
     sub->add_option("OUT", a.command.output, ".gim file to write (-: standard output), or .glb")->required();
-    add_mesh_format(sub, a.command.format,
-                    "Format of MESH. Default: its content tells, else its extension. gim: a headerless image");
 }
 
 void add_glb_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_flag("--fallback", a.command.fallback,
                   "GLB: also write plain arrays to OUT.fallback.bin, for readers that do not know the extension. Other "
                   "readers do not fetch that file");
+}
+
+// Options of how the work is done, and of how the input is read.
+void add_work_options(CLI::App* sub, EncodeArguments& a, uint32_t threads) {
+    add_mesh_format(sub, a.command.format,
+                    "Format of MESH. Default: its content tells, else its extension. gim: a headerless image");
+    sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
+    a.command.options.threads = threads;
+    sub->add_option("--threads", a.command.options.threads,
+                    "Number of threads, 0: all cores. The bytes do not depend on it")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    add_max_memory(sub, a.command.max_memory);
 }
 
 // Options of images of other programs.
@@ -250,7 +261,33 @@ void add_report_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_flag("--quiet", a.command.quiet, "Print no progress and no summary");
 }
 
+// All options that say how a mesh becomes a file.
+void add_all_options(CLI::App* sub, EncodeArguments& a, uint32_t threads) {
+    add_image_options(sub, a);
+    add_repair_options(sub, a);
+    add_rate_options(sub, a);
+    add_fit_options(sub, a);
+    add_plane_options(sub, a);
+    add_raster_options(sub, a);
+    add_work_options(sub, a, threads);
+}
+
+EncodeCommand command_of(EncodeArguments& a) {
+    apply_layout(a);
+    apply_rate(a);
+    apply_planes(a);
+    apply_raster(a);
+    a.command.options.density = !a.even;
+    return a.command;
+}
+
 }  // namespace
+
+std::function<EncodeCommand()> add_encoding(CLI::App* sub, uint32_t threads) {
+    const auto arguments = std::make_shared<EncodeArguments>();
+    add_all_options(sub, *arguments, threads);
+    return [arguments] { return command_of(*arguments); };
+}
 
 Subcommand add_encode(CLI::App& app) {
     const auto arguments = std::make_shared<EncodeArguments>();
@@ -287,30 +324,12 @@ Subcommand add_encode(CLI::App& app) {
         "  gim encode atlas.npz atlas.gim --lossless\n"
         "  gim encode scene.glb small.glb --psnr 70\n"
         "  zcat bunny.ply.gz | gim encode - bunny.gim\n"
-        "  for mesh in *.ply; do gim encode \"$mesh\" \"${mesh%.ply}.gim\"; done     several meshes");
+        "  gim batch meshes packed --psnr 70     all meshes of a folder");
     add_file_options(sub, a);
-    add_image_options(sub, a);
-    add_repair_options(sub, a);
-    add_rate_options(sub, a);
-    add_fit_options(sub, a);
-    add_plane_options(sub, a);
+    add_all_options(sub, a, a.command.options.threads);
     add_glb_options(sub, a);
-    add_raster_options(sub, a);
-    sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
-    sub->add_option("--threads", a.command.options.threads,
-                    "Number of threads, 0: all cores. The bytes do not depend on it")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
-    add_max_memory(sub, a.command.max_memory);
     add_report_options(sub, a);
-    return {sub, [arguments] {
-                apply_layout(*arguments);
-                apply_rate(*arguments);
-                apply_planes(*arguments);
-                apply_raster(*arguments);
-                arguments->command.options.density = !arguments->even;
-                return run_encode(arguments->command);
-            }};
+    return {sub, [arguments] { return run_encode(command_of(*arguments)); }};
 }
 
 }  // namespace gim

@@ -28,8 +28,26 @@ struct EncodeCommand {
     RasterOptions raster;                        // of an image
 };
 int run_encode(const EncodeCommand& command);
+// Encodes what was read, whatever kind it is.
+Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress = {},
+                             const Observer& observer = {});
 // If OUT is a GLB.
 int run_encode_glb(const EncodeCommand& command);
+
+struct BatchCommand {
+    std::string inputs;    // list of paths, or folder
+    std::string folder;    // takes the files, the manifest and the report
+    EncodeCommand encode;  // without names of files
+    std::string options;   // as the user gave them, without those that do not change the bytes
+    uint32_t jobs = 1;     // files at a time
+    uint32_t shard = 1, shards = 1;
+    std::string log;          // file for the JSON lines; empty: stdout
+    uint32_t thumbnail = 96;  // pixels per side; 0: none
+    bool report_only = false;
+    bool quiet = false;
+};
+// Returns 0: all done, 1: something failed, 128 + N: signal N asked to stop.
+int run_batch(const BatchCommand& command);
 
 struct DecodeCommand {
     std::string input, output;

@@ -15,26 +15,6 @@
 namespace gim {
 namespace {
 
-Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress,
-                             const Observer& observer) {
-    switch (input.kind) {
-        case Input::Kind::kGim:
-            return Error{Stage::kInput,
-                         "this is already a .gim file; decode it (gim decode IN.gim OUT.ply) and encode the mesh"};
-        case Input::Kind::kRawImage:
-            return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
-                                progress);
-        case Input::Kind::kRaster:
-            if (options.layout != Layout::kMcgim && options.layout != Layout::kAuto)
-                return Error{Stage::kInput,
-                             "an image of charts has the layout mcgim; leave --layout out, or say mcgim"};
-            return encode_raster(input.raster, options, progress);
-        case Input::Kind::kMesh:
-            break;
-    }
-    return encode(input.mesh, options, progress, observer);
-}
-
 std::string format_line(const char* label, const std::string& value) {
     std::string line = label;
     line.resize(26, ' ');
@@ -200,6 +180,26 @@ std::optional<FileError> check_names(const EncodeCommand& command) {
 }
 
 }  // namespace
+
+Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress,
+                             const Observer& observer) {
+    switch (input.kind) {
+        case Input::Kind::kGim:
+            return Error{Stage::kInput,
+                         "this is already a .gim file; decode it (gim decode IN.gim OUT.ply) and encode the mesh"};
+        case Input::Kind::kRawImage:
+            return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
+                                progress);
+        case Input::Kind::kRaster:
+            if (options.layout != Layout::kMcgim && options.layout != Layout::kAuto)
+                return Error{Stage::kInput,
+                             "an image of charts has the layout mcgim; leave --layout out, or say mcgim"};
+            return encode_raster(input.raster, options, progress);
+        case Input::Kind::kMesh:
+            break;
+    }
+    return encode(input.mesh, options, progress, observer);
+}
 
 int run_encode(const EncodeCommand& command) {
     if (extension_of(command.output) == "glb") return run_encode_glb(command);

@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kMark = ".gim-partial-";
 constexpr int kMostNames = 100;  // tries
 constexpr long kUsualNameLength = 255;
 
@@ -36,7 +37,7 @@ std::string shortened(std::string name, size_t most) {
 std::string temporary_beside(const fs::path& target) {
     const fs::path folder = folder_of(target);
     const long limit = ::pathconf(folder.c_str(), _PC_NAME_MAX);
-    const std::string end = ".gim-partial-" + random_letters(6);
+    const std::string end = kMark + random_letters(6);
     const auto most = static_cast<size_t>(limit > 0 ? limit : kUsualNameLength);
     const size_t room = most > end.size() ? most - end.size() - 1 : 0;
     return (folder / ("." + shortened(target.filename().string(), room) + end)).string();
@@ -66,6 +67,21 @@ std::string advice(int error) {
 }
 
 }  // namespace
+
+std::optional<std::string> target_of_partial(const std::string& name) {
+    const size_t mark = name.rfind(kMark);
+    if (mark == std::string::npos || mark < 1 || name.front() != '.') return {};
+    return name.substr(1, mark - 1);
+}
+
+void remove_partials_of(const fs::path& target) {
+    const std::string begin = "." + target.filename().string() + kMark;
+    std::error_code failure;
+    for (fs::directory_iterator entry(folder_of(target), failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+        if (entry->path().filename().string().starts_with(begin)) ::unlink(entry->path().c_str());
+    }
+}
 
 Error cannot_write(int error) { return {Stage::kWrite, "cannot write: " + reason(error) + "; " + advice(error)}; }
 
@@ -116,6 +132,12 @@ Result<void> PartialFile::take_name() {
     if (std::rename(path_.c_str(), target_.c_str()) != 0) return cannot_write(errno);
     is_there_ = false;
     return {};
+}
+
+std::string PartialFile::hand_over() {
+    removed_on_signal_.reset();
+    is_there_ = false;
+    return path_;
 }
 
 }  // namespace gim

@@ -24,10 +24,13 @@ class PartialFile {
     PartialFile& operator=(const PartialFile&) = delete;
     ~PartialFile();  // removes the file unless it has its name
 
-    // Writes all bytes of the file. It takes the permissions of an old target, and its owner as far as the system allows.
+    // Writes all bytes of the file. It takes the permissions of an old target, and its owner as far as the system
+    // allows.
     Result<void> write(std::span<const uint8_t> bytes);
     // Replaces the target.
     Result<void> take_name();
+    // Keeps the file under its temporary name, which it returns. Whoever takes it over must rename it or remove it.
+    std::string hand_over();
 
   private:
     PartialFile(std::filesystem::path target, std::string path)
@@ -39,6 +42,12 @@ class PartialFile {
     std::optional<Descriptor> file_;                    // open until it is written
     bool is_there_ = false;
 };
+
+// ".NAME.gim-partial-XXXXXX" -> "NAME"; nothing for other names. A long NAME may have been shortened.
+std::optional<std::string> target_of_partial(const std::string& name);
+
+// Removes what killed programs left of this target. No program may be writing it. Finds no names that were shortened.
+void remove_partials_of(const std::filesystem::path& target);
 
 bool write_all(int fd, std::span<const uint8_t> bytes);
 

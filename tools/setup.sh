@@ -8,6 +8,7 @@ readonly GIM_BUILD_PACKAGES=(
     g++ cmake ninja-build pkg-config
     libeigen3-dev libopenmesh-dev liblemon-dev libtbb-dev libzstd-dev
     libcli11-dev nlohmann-json3-dev libopenexr-dev libdraco-dev libmeshoptimizer-dev libstb-dev libcpp-httplib-dev libzip-dev
+    libsqlite3-dev libxxhash-dev
     libepoxy-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
     libgtest-dev
 )
@@ -33,6 +34,9 @@ readonly GIM_NPM_PACKAGES=(
 readonly GIM_CROSS_PACKAGES=(
     gcc g++ clang g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-s390x-linux-gnu qemu-user
 )
+
+# Of `tools/test.sh cluster`.
+readonly GIM_CLUSTER_PACKAGES=(slurmctld slurmd slurm-client munge python3)
 
 # Of `tools/test.sh web`, besides those of tools/npm.sh.
 readonly GIM_WEB_PACKAGES=(g++ cmake ninja-build pkg-config libzstd-dev libgtest-dev)

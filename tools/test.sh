@@ -7,6 +7,7 @@
 #        bash tools/test.sh gltf      only glTF files, with the Khronos validator if npm can fetch it
 #        bash tools/test.sh packages  only the Debian packages of what is built in build/ci: lintian, and their use in an
 #                                     empty Debian; three minutes, and the build if there is none
+#        bash tools/test.sh cluster   only gim batch as a Slurm array, on a Slurm of one node; one minute, and the build
 #        bash tools/test.sh cross     only the conformance vectors, on other compilers and platforms; three minutes
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -70,6 +71,14 @@ test_packages() {
     bash "$GIM_ROOT/tests/packages/run.sh" "$GIM_ROOT/build/ci/package" || exit 1
 }
 
+test_cluster() {
+    install_packages "${GIM_BUILD_PACKAGES[@]}"
+    (install_packages "${GIM_CLUSTER_PACKAGES[@]}") || { say "Skipped: no Slurm, so tools/slurm stays untested" && return 0; }
+    configure ci
+    build ci gim gim_corpus
+    bash "$GIM_ROOT/tests/slurm/run.sh" "$GIM_ROOT/build/ci/tools/gim" "$GIM_ROOT/build/ci/corpus/gim_corpus"
+}
+
 test_cross() {
     install_packages "${GIM_CROSS_PACKAGES[@]}"
     say "Vectors on other platforms"
@@ -104,8 +113,9 @@ case "${1:-}" in
     gpu) test_gpu && exit 0 ;;
     packages) test_packages && exit 0 ;;
     cross) test_cross && exit 0 ;;
+    cluster) (test_cluster) || exit 1; exit 0 ;;
     web) (test_web) || exit 1; exit 0 ;;
-    *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross]" ;;
+    *) die "usage: bash tools/test.sh [gltf | gpu | web | packages | cross | cluster]" ;;
 esac
 
 install_packages "${GIM_BUILD_PACKAGES[@]}" "${GIM_PYTHON_PACKAGES[@]}" libbenchmark-dev clang clang-format-14

@@ -172,7 +172,7 @@ TEST_F(Commands, AForgottenOutDoesNotReplaceTheSecondMesh) {
 TEST_F(Commands, SeveralMeshesAreRefusedWithAWayOut) {
     const Outcome run = gim(encode({mesh, mesh, folder.file("out.gim")}));
     EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(contains(run.err, "one mesh") && contains(run.err, "for mesh in")) << run.err;
+    EXPECT_TRUE(contains(run.err, "one mesh") && contains(run.err, "gim batch")) << run.err;
     const Outcome option = gim(encode({mesh, folder.file("out.gim"), "--no-such-option"}));
     EXPECT_EQ(option.status, 2);
     EXPECT_TRUE(contains(option.err, "--no-such-option")) << option.err;
