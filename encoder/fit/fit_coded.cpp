@@ -18,7 +18,6 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
-#include "encoder/fit/fitter.h"
 #include "encoder/fit/prices.h"
 #include "encoder/surface/surface_samples.h"
 
@@ -47,18 +46,22 @@ struct Schedule {
     int rounds() const;
 };
 constexpr Schedule::Part kCycle = {4, 1}, kLast = {6, 3};
+constexpr int kCycles = 4;
 int Schedule::rounds() const { return cycles * (kCycle.free + kCycle.held) + last.free + last.held; }
 
 Schedule schedule_of(CodedFit::Effort effort) {
     switch (effort) {
         case CodedFit::Effort::kSearch:
             return {1, {0, 0}};
+        case CodedFit::Effort::kCoarse:
+            return {kCycles, {0, 0}};
+        case CodedFit::Effort::kRefine:
         case CodedFit::Effort::kAdjust:
             return {0, kLast};
         case CodedFit::Effort::kFinal:
             break;
     }
-    return {4, kLast};
+    return {kCycles, kLast};
 }
 
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
@@ -159,17 +162,18 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
 }  // namespace
 
 struct CodedFit::Impl {
-    Impl(const GeometryImage& start, const Mesh& mesh, uint64_t first_seed, const Rails& rails)
+    Impl(const GeometryImage& start, std::shared_ptr<const FitSurface> fit_surface, uint64_t first_seed,
+         const Rails& rails)
         : gluing(start.gluing),
-          frame(mesh),
-          reference(Mesh{frame.into(mesh.positions), mesh.triangles}),
-          fitter(start.positions, reference, gluing, frame, {.rails = rails}),
+          surface(std::move(fit_surface)),
+          frame(surface->frame),
+          fitter(start.positions, surface->reference, gluing, frame, {.rails = rails}),
           first_positions(fitter.positions()),
           seed(first_seed) {}
 
     GridGluing gluing;
+    std::shared_ptr<const FitSurface> surface;
     FitFrame frame;
-    FitReference reference;
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
     uint64_t seed;
@@ -232,10 +236,16 @@ CodedFit::~CodedFit() = default;
 CodedFit::CodedFit(CodedFit&&) noexcept = default;
 CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 
+FitSurface::FitSurface(const Mesh& mesh) : frame(mesh), reference(Mesh{frame.into(mesh.positions), mesh.triangles}) {}
+
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
                    const Rails& rails)
-    : impl_(std::make_unique<Impl>(start, reference, seed, rails)) {
-    impl_->codec = make_codec({impl_->gluing, impl_->reference, impl_->frame, impl_->fitter.front()});
+    : CodedFit(start, make_codec, std::make_shared<const FitSurface>(reference), seed, rails) {}
+
+CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec,
+                   std::shared_ptr<const FitSurface> surface, uint64_t seed, const Rails& rails)
+    : impl_(std::make_unique<Impl>(start, std::move(surface), seed, rails)) {
+    impl_->codec = make_codec({impl_->gluing, impl_->surface->reference, impl_->frame, impl_->fitter.front()});
 }
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
@@ -259,11 +269,27 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
     for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, 0);
-    if (effort == Effort::kFinal) impl_->keep_as_cycled();
+    if (effort == Effort::kFinal || effort == Effort::kRefine) impl_->keep_as_cycled();
     rounds(schedule.last, 0, kFullUnfoldings);
+    return positions();
+}
+
+uint64_t CodedFit::folds() const { return impl_->fitter.folds(); }
+
+std::vector<Vec3> CodedFit::positions() const {
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
     return positions;
+}
+
+void CodedFit::place(const std::vector<Vec3>& positions) {
+    std::vector<Vec3> placed = impl_->frame.into(positions);
+    for (const auto& members : impl_->gluing.shared) {
+        Vec3 sum = Vec3::Zero();
+        for (const uint32_t v : members) sum += placed[v];
+        for (const uint32_t v : members) placed[v] = sum / static_cast<double>(members.size());
+    }
+    impl_->fitter.place(std::move(placed));
 }
 
 }  // namespace gim

@@ -35,6 +35,22 @@ Mesh boundary_curve(const Mesh& mesh) {
     return curve;
 }
 
+// Counts the faces that look away from the reference at their centres.
+uint64_t count_folds(const ImageSurface& image, const FitReference& reference, const std::vector<bool>& held,
+                     double front) {
+    const std::vector<Vec3>& positions = image.mesh.positions;
+    std::vector<Vec3> centres(image.mesh.triangles.size());
+    for (size_t f = 0; f < centres.size(); ++f) {
+        const Triangle& t = image.mesh.triangles[f];
+        centres[f] = (positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3;
+    }
+    const std::vector<ClosestPoint> at_centre = reference.tree.find_all(centres);
+    return static_cast<uint64_t>(parallel_sum(centres.size(), 0, [&](size_t f) {
+        if (touches(image.mesh.triangles[f], held)) return 0.0;
+        return front * image.normals[f].dot(reference.normals[at_centre[f].triangle]) < 0 ? 1.0 : 0.0;
+    }));
+}
+
 }  // namespace
 
 FitFrame::FitFrame(const Mesh& mesh) {
@@ -75,16 +91,7 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
                                [&](size_t k) { return counts(k) ? to_reference[k].squared_distance : 0.0; }) /
                   std::max(1.0, used));
 
-    std::vector<Vec3> centres(image.mesh.triangles.size());
-    for (size_t f = 0; f < centres.size(); ++f) {
-        const Triangle& t = image.mesh.triangles[f];
-        centres[f] = (positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3;
-    }
-    const std::vector<ClosestPoint> at_centre = reference.tree.find_all(centres);
-    quality.folds = static_cast<uint64_t>(parallel_sum(centres.size(), 0, [&](size_t f) {
-        if (touches(image.mesh.triangles[f], held)) return 0.0;
-        return front * image.normals[f].dot(reference.normals[at_centre[f].triangle]) < 0 ? 1.0 : 0.0;
-    }));
+    quality.folds = count_folds(image, reference, held, front);
     return quality;
 }
 
@@ -133,6 +140,8 @@ Fitter::Fitter(const std::vector<Vec3>& start, const FitReference& reference, co
 }
 
 FitQuality Fitter::quality() const { return measure(x_, gluing_, reference_, held_, front_); }
+
+uint64_t Fitter::folds() const { return count_folds(ImageSurface(x_, gluing_), reference_, held_, front_); }
 
 void Fitter::round(double lambda, double density, uint64_t seed, bool guarded) {
     const FitSystem system = linearise(lambda, density, seed);

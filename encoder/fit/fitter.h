@@ -61,6 +61,7 @@ class Fitter {
     // The sign that makes the image face outwards.
     double front() const { return front_; }
     FitQuality quality() const;
+    uint64_t folds() const;  // the same number as in quality()
     // positions: in the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }
 

@@ -1,11 +1,11 @@
 #include "encoder/squares/coding_trial.h"
 
 #include <cmath>
+#include <memory>
 
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/file_units.h"
 #include "encoder/code/rate_target.h"
-#include "encoder/fit/fit_coded.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 
@@ -14,7 +14,10 @@ namespace gim {
 using Values = RateSearchValues;
 
 CodingTrial::CodingTrial(const Mesh& surface, const EncodeOptions& options, const SquareImage& example)
-    : surface_(surface, options.threads), options_(options), quantizer_(quantizer_for(example)) {}
+    : surface_(surface, options.threads),
+      fit_surface_(std::make_shared<const FitSurface>(surface)),
+      options_(options),
+      quantizer_(quantizer_for(example)) {}
 
 Result<CodingTrial::Coded> CodingTrial::coded(const SquareImage& image, double quantizer) const {
     CodingParameters parameters;
@@ -25,7 +28,7 @@ Result<CodingTrial::Coded> CodingTrial::coded(const SquareImage& image, double q
     parameters.units = units_of({&image, 1}, options_.bits);
     Units units = *parameters.units;
     units.quantizer = quantizer_in_range(quantizer);
-    CodedFit fit(image, square_codec(image.side(), file_seams(image)), surface_.mesh(), options_.seed);
+    CodedFit fit(image, square_codec(image.side(), file_seams(image)), fit_surface_, options_.seed);
     SquareImage fitted = image;
     fitted.positions = fit.run(units, CodedFit::Effort::kSearch);
     GIM_TRY(bytes, write_squares({&fitted, 1}, parameters));

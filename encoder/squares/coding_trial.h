@@ -1,7 +1,10 @@
 // Measures how many bytes images of one surface cost, by coding them.
 #pragma once
 
+#include <memory>
+
 #include "encoder/base/result.h"
+#include "encoder/fit/fit_coded.h"
 #include "encoder/squares/square_image.h"
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/mesh.h"
@@ -27,6 +30,7 @@ class CodingTrial {
     double quantizer_for(const SquareImage& image) const;
 
     ReferenceSurface surface_;
+    std::shared_ptr<const FitSurface> fit_surface_;
     EncodeOptions options_;
     double quantizer_;
 };

@@ -103,7 +103,7 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     square.image = std::move(sampled);
     if (observer) observer(make_snapshot("image-sampled", "sampled", square.image));
     const std::optional<FitOptions> fit_options = first_fit(options);
-    if (!fit_options) return square;
+    if (!fit_options || is_fitted_to_codec(options)) return square;  // the fit to the codec needs no other before it
 
     clock.begin(Stage::kFit);
     GIM_TRY(fitted, fit(square.image, mesh, *fit_options, clock.progress()));

@@ -8,7 +8,7 @@
 
 #include "encoder/code/file_units.h"
 #include "encoder/fit/fit_strength.h"
-#include "encoder/squares/square_codec.h"
+#include "encoder/squares/square_fit.h"
 #include "encoder/squares/square_texels.h"
 #include "encoder/squares/write_squares.h"
 #include "format/sideband_code.h"
@@ -34,6 +34,7 @@ class SquaresLayout final : public LayoutImages {
             report.cut_paths += static_cast<uint32_t>(image.sideband.paths.size());
         }
         report.width = report.height = report.side;
+        report.folds_before_fit += folds_before_fit_;
     }
 
     bool is_fitted_to_quantizer() const override { return is_lossy_fit_; }
@@ -50,7 +51,7 @@ class SquaresLayout final : public LayoutImages {
     }
 
     void restart_fit() override {
-        for (CodedFit& fit : fits_) fit.restart();
+        for (SquareFit& fit : fits_) fit.restart();
     }
 
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
@@ -79,15 +80,17 @@ class SquaresLayout final : public LayoutImages {
     void make_fits(uint64_t seed) {
         for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
             const SquareImage& image = squares_.images[i];
-            fits_.emplace_back(image, square_codec(image.side(), file_seams(image)), squares_.surfaces[i], seed);
+            fits_.emplace_back(image, squares_.surfaces[i], seed);
+            if (is_lossy_fit_) folds_before_fit_ += fits_.back().folds();
             squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }
 
     Squares squares_;
     bool is_lossy_fit_;
-    bool is_rough_ = false;               // after a quick fit
-    mutable std::vector<CodedFit> fits_;  // one per image of a lossy file; mutable: repairing keeps search trees warm
+    uint64_t folds_before_fit_ = 0;        // of images that are fitted to the codec
+    bool is_rough_ = false;                // after a quick fit
+    mutable std::vector<SquareFit> fits_;  // one per image of a lossy file; mutable: repairing keeps search trees warm
     std::optional<Units> units_;  // of the first fit; samples fitted to a quantizer must be coded with the same steps
 };
 

@@ -1,0 +1,83 @@
+#include "encoder/squares/square_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "encoder/squares/square_codec.h"
+#include "encoder/squares/write_squares.h"
+
+namespace gim {
+
+namespace {
+
+constexpr uint32_t kLeastSide = 257;  // of an image that is fitted from a coarser one
+
+constexpr int kCodesPerFourfold = 8;  // of cell_area_of()
+
+std::vector<float> triples_of(const std::vector<Vec3>& positions, const Units& units) {
+    std::vector<float> image(3 * positions.size());
+    for (size_t i = 0; i < image.size(); ++i) {
+        const double from_origin = positions[i / 3][static_cast<int>(i % 3)] - double{units.origin[i % 3]};
+        image[i] = static_cast<float>(from_origin / double{units.step});
+    }
+    return image;
+}
+
+std::vector<Vec3> positions_of(const std::vector<float>& image, const Units& units) {
+    std::vector<Vec3> positions(image.size() / 3);
+    for (size_t i = 0; i < image.size(); ++i) {
+        positions[i / 3][static_cast<int>(i % 3)] = double{units.origin[i % 3]} + double{units.step} * double{image[i]};
+    }
+    return positions;
+}
+
+std::optional<SquareImage> halved(const SquareImage& image) {
+    const uint32_t side = (image.side() - 1) / 2 + 1;
+    if (image.side() < kLeastSide || side < image.sideband.node_side) return {};
+    SquareGrid grid{side, {}};
+    for (uint32_t row = 0; row < side; ++row) {
+        for (uint32_t column = 0; column < side; ++column) grid.positions.push_back(image.at(2 * row, 2 * column));
+    }
+    auto glued = glue_square(std::move(grid), image.sideband);
+    if (!glued.ok()) return {};
+    return std::move(glued.value());
+}
+
+// A sample of the coarse image stands for four. So the same details have half the quantizer there, and a cell four
+// times the area.
+Units halved(Units units) {
+    units.quantizer /= 2;
+    if (units.cell_area > 0) units.cell_area = static_cast<uint8_t>(std::min(255, units.cell_area + kCodesPerFourfold));
+    return units;
+}
+
+}  // namespace
+
+SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed)
+    : side_(start.side()), seams_(file_seams(start)), fine_(make_fit(start, surface, seed)) {}
+
+CodedFit SquareFit::make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed) {
+    const auto shared = std::make_shared<const FitSurface>(surface);
+    if (const auto half = halved(start)) coarse_.emplace(*half, square_codec(half->side(), seams_), shared, seed);
+    return {start, square_codec(side_, seams_), shared, seed};
+}
+
+std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, const Progress& progress) {
+    if (!coarse_ || effort != CodedFit::Effort::kFinal) return fine_.run(units, effort, progress);
+    fit_coarsely(units, progress);
+    return fine_.run(units, CodedFit::Effort::kRefine, progress);
+}
+
+void SquareFit::fit_coarsely(const Units& units, const Progress& progress) {
+    Pyramid<float> pyramid = analyse<Irreversible97>(triples_of(fine_.positions(), units), side_, side_, 1, &seams_);
+    coarse_->place(positions_of(pyramid.base, units));
+    pyramid.base = triples_of(coarse_->run(halved(units), CodedFit::Effort::kCoarse, progress), units);
+    AnalysisLevel<float>& details = pyramid.levels[0];
+    for (auto* band : {&details.horizontal, &details.vertical, &details.diagonal})
+        std::fill(band->begin(), band->end(), 0.0f);
+    fine_.place(positions_of(restore<Irreversible97>(pyramid, &seams_), units));
+}
+
+}  // namespace gim

@@ -1,0 +1,40 @@
+// Fits a square to its surface and to the codec (fit/fit_coded.h), from coarse to fine: most rounds of a full fit run on
+// the image of half the side, at a quarter of their cost.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "encoder/fit/fit_coded.h"
+#include "encoder/squares/square_image.h"
+#include "encoder/surface/mesh.h"
+#include "format/seam.h"
+
+namespace gim {
+
+class SquareFit {
+  public:
+    // Copies its arguments. The image's sideband must be valid.
+    SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed);
+
+    // As CodedFit. A full fit (kFinal) of a large square first fits its low band, as an image of half the side. The finest
+    // details then begin at zero. Files are as small as those of full fits at one side, or smaller.
+    std::vector<Vec3> run(const Units& units, CodedFit::Effort effort, const Progress& progress = {});
+    void repair(std::span<Pyramid<int32_t>> bands, const Units& units) { fine_.repair(bands, units); }
+    void restart() { fine_.restart(); }
+    uint64_t folds() const { return fine_.folds(); }
+
+  private:
+    CodedFit make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed);
+    // Moves the samples of fine_ to where the coarse image leads them.
+    void fit_coarsely(const Units& units, const Progress& progress);
+
+    uint32_t side_;
+    SeamTable seams_;
+    std::optional<CodedFit> coarse_;  // nothing for small squares, and where the cut has no room on the coarser grid
+    CodedFit fine_;
+};
+
+}  // namespace gim
