@@ -28,8 +28,10 @@ BEGIN, END = "<!-- sizes:begin -->", "<!-- sizes:end -->"
 TARGETS_DB = (60, 65, 70, 75)
 COMPARED = ("bunny", "horse", "feline", "venus", "igea", "hand", "dragon", "gargoyle", "david", "rocker-arm")
 OLD = "†"
-SAME_CODE_SINCE = 3  # coder version; later ones added to the header only
-HEADER_NOTE = ("Files of version 3 lack the errors and boxes of the header: as many bytes fewer as they have levels, and 7 for\n"
+SAME_CODE_SINCE = 5  # coder version; later ones gave files the same bytes
+HEADER_NOTE = ("Version 5 fits squares of side 257 and more from coarse to fine. At the default quality, seven models take 1.3 % fewer\n"
+               "bytes in the mean, from 7.6 % fewer to 1.1 % more. It codes borders of charts by those of the coarser level.\n"
+               "Files of version 3 lack the errors and boxes of the header: as many bytes fewer as they have levels, and 7 for\n"
                "each image. That is 12 for a square of five levels.")
 TILES = "▦"
 REACH_DB = 0.5     # the rival's curve counts this far beyond its ends, with the values of the ends
