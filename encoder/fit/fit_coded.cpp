@@ -276,6 +276,11 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
 
 uint64_t CodedFit::folds() const { return impl_->fitter.folds(); }
 
+double CodedFit::distance() const {
+    const FitQuality quality = impl_->fitter.quality();
+    return std::max(quality.to_image, quality.to_reference) / impl_->frame.scale;
+}
+
 std::vector<Vec3> CodedFit::positions() const {
     std::vector<Vec3> positions;
     for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));

@@ -69,6 +69,8 @@ class CodedFit {
     void place(const std::vector<Vec3>& positions);
     // Returns the number of faces that look away from the surface.
     uint64_t folds() const;
+    // Returns the larger of the RMS distances from the samples' faces to the surface and back, in the unit of the mesh.
+    double distance() const;
 
   private:
     struct Impl;

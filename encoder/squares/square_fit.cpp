@@ -12,8 +12,12 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kLeastSide = 257;  // of an image that is fitted from a coarser one
-
+// Distance of a coarser image, in steps of the quantizer, from which on it leads samples astray. Thin parts then lie
+// between its samples. At the default quality every second sample of bunny, horse, rocker-arm and fandisk is 0.17 to 0.29 off, and
+// the fit from coarse to fine changes the bytes by -8 to +1 %; of feline, gargoyle and dragon it is 0.54 to 0.6 off, and the bytes
+// rise by 2 to 14 %.
+constexpr double kMostDistance = 0.4;
+constexpr double kCoarsePart = 0.35;  // of the time
 constexpr int kCodesPerFourfold = 8;  // of cell_area_of()
 
 std::vector<float> triples_of(const std::vector<Vec3>& positions, const Units& units) {
@@ -33,9 +37,14 @@ std::vector<Vec3> positions_of(const std::vector<float>& image, const Units& uni
     return positions;
 }
 
+Progress part_of(const Progress& whole, double begin, double end) {
+    if (!whole) return {};
+    return [=](Stage stage, double fraction) { return whole(stage, begin + (end - begin) * fraction); };
+}
+
 std::optional<SquareImage> halved(const SquareImage& image) {
     const uint32_t side = (image.side() - 1) / 2 + 1;
-    if (image.side() < kLeastSide || side < image.sideband.node_side) return {};
+    if (image.side() < kLeastSideFromCoarse || side < image.sideband.node_side) return {};
     SquareGrid grid{side, {}};
     for (uint32_t row = 0; row < side; ++row) {
         for (uint32_t column = 0; column < side; ++column) grid.positions.push_back(image.at(2 * row, 2 * column));
@@ -60,14 +69,21 @@ SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t see
 
 CodedFit SquareFit::make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed) {
     const auto shared = std::make_shared<const FitSurface>(surface);
-    if (const auto half = halved(start)) coarse_.emplace(*half, square_codec(half->side(), seams_), shared, seed);
+    if (const auto half = halved(start)) {
+        coarse_.emplace(*half, square_codec(half->side(), seams_), shared, seed);
+        coarse_distance_ = coarse_->distance();
+    }
     return {start, square_codec(side_, seams_), shared, seed};
 }
 
 std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, const Progress& progress) {
-    if (!coarse_ || effort != CodedFit::Effort::kFinal) return fine_.run(units, effort, progress);
-    fit_coarsely(units, progress);
-    return fine_.run(units, CodedFit::Effort::kRefine, progress);
+    if (effort != CodedFit::Effort::kFinal || !is_led_by_coarse(units)) return fine_.run(units, effort, progress);
+    fit_coarsely(units, part_of(progress, 0, kCoarsePart));
+    return fine_.run(units, CodedFit::Effort::kRefine, part_of(progress, kCoarsePart, 1));
+}
+
+bool SquareFit::is_led_by_coarse(const Units& units) const {
+    return coarse_ && coarse_distance_ <= kMostDistance * double{units.quantizer} * double{units.step};
 }
 
 void SquareFit::fit_coarsely(const Units& units, const Progress& progress) {

@@ -14,13 +14,17 @@
 
 namespace gim {
 
+// The side of the smallest squares that are fitted from coarse to fine.
+inline constexpr uint32_t kLeastSideFromCoarse = 257;
+
 class SquareFit {
   public:
     // Copies its arguments. The image's sideband must be valid.
     SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed);
 
     // As CodedFit. A full fit (kFinal) of a large square first fits its low band, as an image of half the side. The finest
-    // details then begin at zero. Files are as small as those of full fits at one side, or smaller.
+    // details then begin at zero. Where every second sample shows too little of the surface, all rounds run at the full
+    // side.
     std::vector<Vec3> run(const Units& units, CodedFit::Effort effort, const Progress& progress = {});
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units) { fine_.repair(bands, units); }
     void restart() { fine_.restart(); }
@@ -28,12 +32,14 @@ class SquareFit {
 
   private:
     CodedFit make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed);
+    bool is_led_by_coarse(const Units& units) const;
     // Moves the samples of fine_ to where the coarse image leads them.
     void fit_coarsely(const Units& units, const Progress& progress);
 
     uint32_t side_;
     SeamTable seams_;
     std::optional<CodedFit> coarse_;  // nothing for small squares, and where the cut has no room on the coarser grid
+    double coarse_distance_ = 0;      // of every second sample, as taken from the surface
     CodedFit fine_;
 };
 

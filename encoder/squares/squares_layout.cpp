@@ -81,14 +81,15 @@ class SquaresLayout final : public LayoutImages {
         for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
             const SquareImage& image = squares_.images[i];
             fits_.emplace_back(image, squares_.surfaces[i], seed);
-            if (is_lossy_fit_) folds_before_fit_ += fits_.back().folds();
+            const bool is_raw = is_lossy_fit_ && image.side() >= kLeastSideFromCoarse;
+            if (is_raw) folds_before_fit_ += fits_.back().folds();
             squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }
 
     Squares squares_;
     bool is_lossy_fit_;
-    uint64_t folds_before_fit_ = 0;        // of images that are fitted to the codec
+    uint64_t folds_before_fit_ = 0;        // of images that no other fit precedes
     bool is_rough_ = false;                // after a quick fit
     mutable std::vector<SquareFit> fits_;  // one per image of a lossy file; mutable: repairing keeps search trees warm
     std::optional<Units> units_;  // of the first fit; samples fitted to a quantizer must be coded with the same steps
