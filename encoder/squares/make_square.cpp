@@ -32,12 +32,6 @@ std::string percent(double part) {
     return text;
 }
 
-// The fit to the codec needs no other before it where there are many samples. On small sides, files take up to 3 % more bytes
-// without one.
-bool needs_first_fit(const EncodeOptions& options) {
-    return !is_fitted_to_codec(options) || options.side < kLeastSideFromCoarse;
-}
-
 Snapshot show_map(std::string name, std::string caption, const OpenedMesh& opened, const std::vector<Vec2>& uv) {
     return make_snapshot(std::move(name), std::move(caption), opened.mesh, edges_of_loop(opened.loop), uv);
 }
@@ -110,7 +104,7 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     square.image = std::move(sampled);
     if (observer) observer(make_snapshot("image-sampled", "sampled", square.image));
     const std::optional<FitOptions> fit_options = first_fit(options);
-    if (!fit_options || !needs_first_fit(options)) return square;
+    if (!fit_options || !needs_first_fit(options, options.side)) return square;
 
     clock.begin(Stage::kFit);
     GIM_TRY(fitted, fit(square.image, mesh, *fit_options, clock.progress()));

@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "encoder/code/rate_target.h"
+#include "encoder/fit/fit_strength.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 
@@ -63,6 +65,10 @@ Units halved(Units units) {
 }
 
 }  // namespace
+
+bool needs_first_fit(const EncodeOptions& options, uint32_t side) {
+    return !is_fitted_to_codec(options) || is_searched(options.rate) || side < kLeastSideFromCoarse;
+}
 
 SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed)
     : side_(start.side()), seams_(file_seams(start)), fine_(make_fit(start, surface, seed)) {}

@@ -21,7 +21,7 @@ class SquaresLayout final : public LayoutImages {
   public:
     SquaresLayout(Squares squares, const EncodeOptions& options)
         : squares_(std::move(squares)), is_lossy_fit_(is_fitted_to_codec(options)) {
-        if (options.rate.kind != RateTarget::Kind::kLossless) make_fits(options.seed);
+        if (options.rate.kind != RateTarget::Kind::kLossless) make_fits(options);
     }
 
     void describe(EncodeReport& report) const override {
@@ -77,12 +77,11 @@ class SquaresLayout final : public LayoutImages {
     }
 
   private:
-    void make_fits(uint64_t seed) {
+    void make_fits(const EncodeOptions& options) {
         for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
             const SquareImage& image = squares_.images[i];
-            fits_.emplace_back(image, squares_.surfaces[i], seed);
-            const bool is_raw = is_lossy_fit_ && image.side() >= kLeastSideFromCoarse;
-            if (is_raw) folds_before_fit_ += fits_.back().folds();
+            fits_.emplace_back(image, squares_.surfaces[i], options.seed);
+            if (!needs_first_fit(options, image.side())) folds_before_fit_ += fits_.back().folds();
             squares_.surfaces[i] = {};  // the fit has its own copy
         }
     }
