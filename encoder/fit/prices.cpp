@@ -12,7 +12,7 @@ namespace {
 constexpr double kBits = 1;              // kBits and kNarrow were measured on bunny, horse, feline (spec/rationale.md)
 constexpr double kNarrow = 0.3;          // of a step
 constexpr float kPullsPerSample = 2;     // both surfaces are sampled
-constexpr float kTangentialPull = 0.3f;  // part of a distance's pull along the surface; for preconditioning only
+constexpr float kTangentialPull = 0.1f;  // part of a distance's pull along the surface; for preconditioning only
 constexpr float kLeastArea = 0.05f;      // for preconditioning only
 
 }  // namespace
