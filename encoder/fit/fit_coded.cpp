@@ -64,6 +64,12 @@ Schedule schedule_of(CodedFit::Effort effort) {
     return {kCycles, kLast};
 }
 
+// Part of a distance's pull along the surface, for preconditioning only. From coarse to fine, steps that expect more of it
+// come nearer to the minimum (2 % fewer bytes on bunny, horse and dragon at side 257). On small squares they overshoot.
+float tangential_pull_of(CodedFit::Effort effort) {
+    return effort == CodedFit::Effort::kCoarse || effort == CodedFit::Effort::kRefine ? 0.3f : 0.1f;
+}
+
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
@@ -210,15 +216,16 @@ struct CodedFit::Impl {
         if (reach > 0) fitter.unfold(reach);
     }
 
-    // Runs one round (see the head of this file).
-    void round(const Units& units, Free free) {
+    // Runs one round (see the head of this file). tangential_pull: as Prices.
+    void round(const Units& units, Free free, float tangential_pull) {
         const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
         const auto [basis, c] = codec->coordinates(image, coding);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
         CoordinateSystem coordinates(system, *basis, *codec);
-        const Coordinates y = minimise(coordinates, Prices(*basis, c, coding.quantizer, free), c, 1 / unit);
+        const Coordinates y =
+            minimise(coordinates, Prices(*basis, c, coding.quantizer, free, tangential_pull), c, 1 / unit);
         codec->follow(y);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
@@ -264,7 +271,7 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
             if (free == Free::kAll) impl_->unfold(is_alone || k >= part.free - full ? kFarthest : reach);
-            impl_->round(units, free);
+            impl_->round(units, free, tangential_pull_of(effort));
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();

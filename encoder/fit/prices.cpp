@@ -9,15 +9,15 @@ namespace gim {
 
 namespace {
 
-constexpr double kBits = 1;              // kBits and kNarrow were measured on bunny, horse, feline (spec/rationale.md)
-constexpr double kNarrow = 0.3;          // of a step
-constexpr float kPullsPerSample = 2;     // both surfaces are sampled
-constexpr float kTangentialPull = 0.1f;  // part of a distance's pull along the surface; for preconditioning only
-constexpr float kLeastArea = 0.05f;      // for preconditioning only
+constexpr double kBits = 1;           // kBits and kNarrow were measured on bunny, horse, feline (spec/rationale.md)
+constexpr double kNarrow = 0.3;       // of a step
+constexpr float kPullsPerSample = 2;  // both surfaces are sampled
+constexpr float kLeastArea = 0.05f;   // for preconditioning only
 
 }  // namespace
 
-Prices::Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free)
+Prices::Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free,
+               float tangential_pull)
     : price(c.size()), inverse(c.size()) {
     const auto ln2 = static_cast<float>(std::log(2.0));
     const float bit = 2 * ln2 / 12 * kPullsPerSample * quantizer * quantizer;
@@ -27,7 +27,7 @@ Prices::Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float 
             const float narrow = static_cast<float>(kNarrow) * basis.step(i);
             if (i >= basis.base_size())
                 price[i] = bit * static_cast<float>(kBits) / ln2 / (c[i] * c[i] + narrow * narrow);
-            const float pull = basis.is_tangential(i) ? kTangentialPull : 1;
+            const float pull = basis.is_tangential(i) ? tangential_pull : 1;
             const float area = std::max(kLeastArea, basis.relative_area(i));
             inverse[i] = 1 / (price[i] + basis.norm(i) * basis.norm(i) * kPullsPerSample * area * pull);
         }

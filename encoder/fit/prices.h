@@ -13,8 +13,9 @@ struct Prices {
     // Per coordinate. inverse: about 1 / (price + curvature of the distances), 0 if held; only affects convergence.
     std::vector<float> price, inverse;
 
-    // c: the current coordinates.
-    Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free);
+    // c: the current coordinates. tangential_pull: the part of a distance's pull along the surface that `inverse` counts.
+    Prices(const ImageBasis& basis, const ImageBasis::Coordinates& c, float quantizer, Free free,
+           float tangential_pull);
 };
 
 }  // namespace gim

@@ -52,7 +52,7 @@ TEST(Prices, ScaleIsTheCurvatureOfTheDistances) {
     const test::SquareBasis square(units, kSide, {8, true, 3, static_cast<float>(mean)});
     const PartsBasis& basis = square.basis;
     // Details this large cost next to nothing.
-    const Prices prices(basis, PartsBasis::Coordinates(basis.size(), 1e4f), 8, Free::kAll);
+    const Prices prices(basis, PartsBasis::Coordinates(basis.size(), 1e4f), 8, Free::kAll, 0.1f);
     const size_t diagonal = basis.size() - 3 * 32 * 32;  // the finest band, the last one
     double least = 1e9, most = 0;
     for (size_t row = 2; row < 30; ++row) {
@@ -78,8 +78,8 @@ TEST(Prices, LargerDetailsAndFinerStepsCostLess) {
     const test::SquareBasis square(units, kSide, {8, true, 3, 0});
     const PartsBasis& basis = square.basis;
     const PartsBasis::Coordinates small(basis.size(), 1.0f), large(basis.size(), 50.0f);
-    const Prices cheap(basis, large, 8, Free::kAll), dear(basis, small, 8, Free::kAll),
-        fine(basis, large, 4, Free::kAll), held(basis, large, 8, Free::kNormals);
+    const Prices cheap(basis, large, 8, Free::kAll, 0.1f), dear(basis, small, 8, Free::kAll, 0.1f),
+        fine(basis, large, 4, Free::kAll, 0.1f), held(basis, large, 8, Free::kNormals, 0.1f);
     for (size_t i = 0; i < basis.size(); ++i) {
         if (i < basis.base_size()) {
             ASSERT_EQ(cheap.price[i], 0) << "the base is not paid for";
