@@ -29,9 +29,12 @@ enum class ZipStep : uint8_t {
 inline constexpr std::array<std::array<int32_t, 2>, 8> kDirections{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
+// Classes of where the coarser border leads (BorderGuide).
+inline constexpr uint32_t kGuideClasses = 12;
+
 struct BorderModels {
-    std::array<std::array<BitModel, 4>, 45> turn;    // at the coarsest level: by the turns before
-    std::array<std::array<BitModel, 4>, 12> guided;  // at the others: by where the coarser border leads
+    std::array<std::array<BitModel, 4>, 45> turn;               // at the coarsest level: by the turns before
+    std::array<std::array<BitModel, 4>, kGuideClasses> guided;  // at the others: by where the coarser border leads
     std::array<std::array<BitModel, 25>, 4> length;  // at the coarsest level: of paths without a known mate, and with
                                                      // one; at the others: likewise
     std::array<BitModel, 25> start;                  // of the first sample, at the others
@@ -45,6 +48,12 @@ struct BorderPath {
     uint32_t first = 0;       // index of its begin node in BorderChart::samples
     uint32_t chart = 0;
     uint32_t coarse_length = 0, coarse_first = 0;  // the same at the next coarser level
+
+    // What was coded last guides the next finer level.
+    void keep_as_coarse() {
+        coarse_length = length;
+        coarse_first = first;
+    }
 };
 
 // One chart's place in the arrays of its level.
@@ -61,12 +70,10 @@ struct BorderChart {
 // Where the border of the next coarser level leads. Follows one path from its begin node to its end node.
 class BorderGuide {
   public:
-    static constexpr uint32_t kClasses = 12;
-
     BorderGuide(const BorderChart& chart, const BorderPath& path) : chart_(chart), path_(path) {
         if (!chart.coarse) return;
         here_ = sample(0);
-        next_ = sample(path.coarse_length > 0 ? 1 : 0);
+        next_ = sample(1);
     }
 
     // Returns the class of the angle from the direction of the last step to where the coarser border goes on, seen from
@@ -86,7 +93,7 @@ class BorderGuide {
     // Quarters of a right angle: 5 straight ahead, 1 .. 4 to the right, 6 .. 9 to the left. 0 and 10 are backwards, 11
     // is no direction.
     static uint32_t angle_class(int64_t ahead, int64_t left) {
-        if (ahead == 0 && left == 0) return 11;
+        if (ahead == 0 && left == 0) return kGuideClasses - 1;
         const int64_t side = left < 0 ? -left : left;
         uint32_t size = 5;
         if (5 * side < ahead) {

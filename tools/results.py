@@ -159,7 +159,7 @@ def with_size_table(text, table):
 def intro(coder, results):
     old = sum(row.is_old for row in results.values())
     stale = (f"An older coder made {old} of {len(results)} rows. They are marked {OLD}.\n"
-             "Their bytes and distances are not what the program gives today." if old else "No row is marked as made by an older coder.")
+             "Their bytes and distances may not be what the program gives today." if old else "No row is marked as made by an older coder.")
     return f"""# Results
 
 `tools/results.py` writes this page from [`results.csv`](results.csv), [`rivals.csv`](rivals.csv),

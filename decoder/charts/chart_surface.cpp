@@ -20,6 +20,7 @@ struct ChartGrid {
     uint32_t point(uint32_t row, uint32_t column) const { return points[index(row, column)]; }
 };
 
+// Counts triangles, writes them and adds up their normals, as far as they are wanted.
 class TriangleSink {
   public:
     TriangleSink(const uint32_t* point, const float* samples, uint32_t capacity, const ChartTriangles& out)
@@ -100,10 +101,7 @@ void add_inner_cell(uint32_t i, uint32_t columns, const float* samples, Triangle
     sink->add_proper(main ? a : b, c, d);
 }
 
-// Whether a column of two samples may belong to an inner cell.
-bool both_inside(uint8_t upper, uint8_t lower) {
-    return static_cast<uint8_t>(upper - 1) < kUndefined - 1 && static_cast<uint8_t>(lower - 1) < kUndefined - 1;
-}
+bool is_inside(uint8_t depth) { return depth != kOnBorder && depth != kUndefined; }
 
 }  // namespace
 
@@ -116,9 +114,9 @@ bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, 
         const ChartGrid grid = {ws.depth + chart.first, ws.point + chart.first, chart.columns};
         for (uint32_t row = 0; row + 1 < chart.rows; ++row) {
             const uint8_t *upper = grid.depth + size_t{row} * chart.columns, *lower = upper + chart.columns;
-            bool left = both_inside(upper[0], lower[0]);
+            bool left = is_inside(upper[0]) && is_inside(lower[0]);
             for (uint32_t column = 0; column + 1 < chart.columns; ++column) {
-                const bool right = both_inside(upper[column + 1], lower[column + 1]);
+                const bool right = is_inside(upper[column + 1]) && is_inside(lower[column + 1]);
                 if (left && right) {
                     add_inner_cell(chart.first + grid.index(row, column), chart.columns, samples, &sink);
                 } else {

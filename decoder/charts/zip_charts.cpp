@@ -42,10 +42,8 @@ struct BorderReader {
         border.coarse_columns = halved(chart.columns, shift + 1);
         std::copy_n(border.samples, border.coarse_border_length, coarse);
         border.coarse = coarse;
-        for (uint32_t p = border.first_path; p < border.first_path + border.path_count; ++p) {
-            ws.paths[p].coarse_length = ws.paths[p].length;
-            ws.paths[p].coarse_first = ws.paths[p].first;
-        }
+        for (uint32_t p = border.first_path; p < border.first_path + border.path_count; ++p)
+            ws.paths[p].keep_as_coarse();
     }
     bool read_zipper(BorderCoder<RangeDecoder>& coder, uint32_t p) {
         const BorderPath &first = ws.paths[ws.paths[p].mate], &second = ws.paths[p];

@@ -69,9 +69,7 @@ Result<std::vector<double>> adapt_charts(const Mesh& mesh, uint32_t samples, con
             continue;
         }
         // The chart keeps its shape, but its size is that of an important chart.
-        std::vector<double> own;
-        for (const uint32_t f : atlas.charts[c].source_face) own.push_back(importance[f]);
-        measure_map(atlas.charts[c], own, adapted.maps[c]);
+        measure_map(atlas.charts[c], atlas.charts[c].of_own_faces(importance), adapted.maps[c]);
         scale_best(adapted.maps[c]);
     }
     const std::vector<ClosestPoint> now = distances_of(mesh, adapted, samples);

@@ -163,11 +163,7 @@ Result<std::vector<ChartMap>> parametrize_charts(const std::vector<Chart>& chart
     if (progress) progress(Stage::kParametrize, 0);
     parallel_blocks(charts.size(), 1, options.threads, [&](size_t, size_t begin, size_t end) {
         for (size_t c = begin; c < end; ++c) {
-            std::vector<double> own;
-            if (!importance.empty()) {
-                for (const uint32_t f : charts[c].source_face) own.push_back(importance[f]);
-            }
-            auto map = parametrize_chart(charts[c], own, options);
+            auto map = parametrize_chart(charts[c], charts[c].of_own_faces(importance), options);
             if (map.ok()) {
                 maps[c] = std::move(map.value());
             } else {

@@ -61,6 +61,13 @@ class Borders {
 
 }  // namespace
 
+std::vector<double> Chart::of_own_faces(const std::vector<double>& values) const {
+    std::vector<double> own;
+    if (values.empty()) return own;
+    for (const uint32_t f : source_face) own.push_back(values[f]);
+    return own;
+}
+
 std::vector<Chart> take_apart(const Mesh& mesh, const Topology& topology, const Chartification& charts) {
     std::vector<Chart> result(charts.count);
     // A chart meets a vertex in one fan, so (chart, vertex) names a copy. Charts are filled one after the other.

@@ -29,6 +29,8 @@ struct Chart {
     std::vector<uint32_t> loop;    // border vertices of `mesh`, faces on the left; starts at a cut-node
     std::vector<ChartPath> paths;  // in loop order
 
+    // Returns the values of its own faces, of one per face of the surface. Empty if there are none.
+    std::vector<double> of_own_faces(const std::vector<double>& values) const;
     // Returns the index in `loop` at which path p ends. Its end node is loop[path_end(p) % loop.size()].
     uint32_t path_end(size_t p) const {
         return p + 1 < paths.size() ? paths[p + 1].first : static_cast<uint32_t>(loop.size());

@@ -344,11 +344,8 @@ void inflate(const std::vector<Chart>& charts, const std::vector<double>& import
     for (int round = 0; round < options.rounds; ++round) {
         const Shares shares(packing);
         parallel_blocks(charts.size(), 1, options.threads, [&](size_t c, size_t, size_t) {
-            std::vector<double> own;
-            if (!importance.empty()) {
-                for (const uint32_t f : charts[c].source_face) own.push_back(importance[f]);
-            }
-            inflate_chart(charts[c], static_cast<uint32_t>(c), own, options, shares, maps[c], packing.charts[c]);
+            inflate_chart(charts[c], static_cast<uint32_t>(c), charts[c].of_own_faces(importance), options, shares,
+                          maps[c], packing.charts[c]);
         });
     }
     packing.defined = 0;

@@ -73,26 +73,16 @@ Pyramid<typename Wavelet::Sample> analyse_chart(const ChartLevels& images, size_
     return pyramid;
 }
 
-// Tells a chart what its border was at the next coarser level.
-void follow(const LevelBorders& coarser, size_t c, uint32_t columns, BorderChart& chart,
-            std::vector<BorderPath>& paths) {
-    chart.coarse = coarser.loops[c].data();
-    chart.coarse_columns = columns;
-    chart.coarse_border_length = static_cast<uint32_t>(coarser.loops[c].size());
-    uint32_t first = 0;
-    for (uint32_t p = chart.first_path; p < chart.first_path + chart.path_count; ++p) {
-        paths[p].coarse_length = coarser.lengths[p];
-        paths[p].coarse_first = first;
-        first += coarser.lengths[p];
-    }
-}
-
-// Writes borders and zippers of one level. coarser: those of the next one, or null.
+// Writes borders and zippers of one level. coarser: those of the next one, or null. paths: as the call for that level left
+// them.
 void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector<ChartBox>& charts,
-                  const std::vector<uint32_t>& mates, LevelBorders borders, const LevelBorders* coarser,
-                  uint32_t level) {
-    std::vector<BorderPath> paths(mates.size());
-    for (size_t p = 0; p < paths.size(); ++p) paths[p] = {mates[p], borders.lengths[p], 0, 0, 0, 0};
+                  const std::vector<uint32_t>& mates, LevelBorders borders, const LevelBorders* coarser, uint32_t level,
+                  std::vector<BorderPath>& paths) {
+    for (size_t p = 0; p < paths.size(); ++p) {
+        paths[p].keep_as_coarse();
+        paths[p].mate = mates[p];
+        paths[p].length = borders.lengths[p];
+    }
     std::vector<size_t> zipper_of(mates.size(), 0);  // of the path with the lower number
     for (size_t p = 0, next = 0; p < mates.size(); ++p) {
         if (mates[p] != kNoMate && mates[p] > p) zipper_of[p] = next++;
@@ -108,7 +98,11 @@ void code_borders(RangeEncoder& encoder, BorderModels& models, const std::vector
         chart.border_length = static_cast<uint32_t>(borders.loops[c].size());
         borders.loops[c].resize(size_t{chart.columns} * chart.rows);
         chart.samples = borders.loops[c].data();
-        if (coarser) follow(*coarser, c, halved(chart.columns, 1), chart, paths);
+        if (coarser) {
+            chart.coarse = coarser->loops[c].data();
+            chart.coarse_columns = halved(chart.columns, 1);
+            chart.coarse_border_length = static_cast<uint32_t>(coarser->loops[c].size());
+        }
         (void)coder.code_border(chart, paths.data());
         for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
             if (mates[p] >= p) continue;
@@ -187,12 +181,13 @@ std::vector<std::vector<uint8_t>> ChartCoder::code_levels(const Header& header) 
     for (Pyramid<int32_t>& chart : bands) chain_base(&chart);
     BandModels models(coefficient_kind_of(header));
     BorderModels border_models;
+    std::vector<BorderPath> paths(mates_.size());
     OwnBandWork work(widest);
     std::vector<std::vector<uint8_t>> levels;
     for (uint32_t level = header.level_count; level-- > 0;) {
         RangeEncoder encoder;
         const LevelBorders* coarser = level + 1 < header.level_count ? &borders_[level + 1] : nullptr;
-        code_borders(encoder, border_models, charts_, mates_, borders_[level], coarser, level);
+        code_borders(encoder, border_models, charts_, mates_, borders_[level], coarser, level, paths);
         for (Pyramid<int32_t>& chart : bands) {
             BandCoder<RangeEncoder> coder(&encoder, &models, work.view());
             const uint32_t done = level + 1 == header.level_count ? 0 : chart.steps() - level - 1;

@@ -43,4 +43,13 @@ float quantizer_in_range(double quantizer) {
     return std::clamp(static_cast<float>(quantizer), kMinQuantizer, kMaxQuantizer);
 }
 
+std::vector<Vec3> from_units(std::span<const float> samples, const Units& units) {
+    std::vector<Vec3> positions(samples.size() / 3);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        positions[i / 3][static_cast<int>(i % 3)] =
+            double{samples[i]} * double{units.step} + double{units.origin[i % 3]};
+    }
+    return positions;
+}
+
 }  // namespace gim

@@ -53,4 +53,7 @@ std::vector<Sample> to_units(std::span<const Vec3> positions, const Units& units
     return samples;
 }
 
+// Returns samples, interleaved triples in units, as positions.
+std::vector<Vec3> from_units(std::span<const float> samples, const Units& units);
+
 }  // namespace gim

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "encoder/base/parallel.h"
+#include "encoder/code/file_units.h"
 #include "encoder/fit/prices.h"
 #include "encoder/surface/surface_samples.h"
 
@@ -198,18 +199,12 @@ struct CodedFit::Impl {
         rounds = cycled_rounds;
     }
 
-    // Returns the samples as interleaved triples in units, not rounded.
-    std::vector<float> samples_in(const Units& units) const {
-        std::vector<float> image(3 * fitter.positions().size());
-        for (size_t i = 0; i < fitter.positions().size(); ++i) {
-            const Vec3 position = frame.out_of(fitter.positions()[i]);
-            for (size_t k = 0; k < 3; ++k) {
-                const double from_origin = position[static_cast<int>(k)] - double{units.origin[k]};
-                image[3 * i + k] = static_cast<float>(from_origin / double{units.step});
-            }
-        }
-        return image;
+    std::vector<Vec3> positions() const {
+        std::vector<Vec3> positions;
+        for (const Vec3& p : fitter.positions()) positions.push_back(frame.out_of(p));
+        return positions;
     }
+    std::vector<float> samples_in(const Units& units) const { return to_units<float>(positions(), units); }
 
     // Unfolds, but moves no sample farther than `reach` (in the frame). 0: does nothing.
     void unfold(double reach) {
@@ -288,11 +283,7 @@ double CodedFit::distance() const {
     return std::max(quality.to_image, quality.to_reference) / impl_->frame.scale;
 }
 
-std::vector<Vec3> CodedFit::positions() const {
-    std::vector<Vec3> positions;
-    for (const Vec3& p : impl_->fitter.positions()) positions.push_back(impl_->frame.out_of(p));
-    return positions;
-}
+std::vector<Vec3> CodedFit::positions() const { return impl_->positions(); }
 
 void CodedFit::place(const std::vector<Vec3>& positions) {
     std::vector<Vec3> placed = impl_->frame.into(positions);

@@ -1,10 +1,10 @@
 #include "encoder/squares/square_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
+#include "encoder/code/file_units.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/squares/square_codec.h"
@@ -21,23 +21,6 @@ namespace {
 constexpr double kMostDistance = 0.4;
 constexpr double kCoarsePart = 0.35;  // of the time
 constexpr int kCodesPerFourfold = 8;  // of cell_area_of()
-
-std::vector<float> triples_of(const std::vector<Vec3>& positions, const Units& units) {
-    std::vector<float> image(3 * positions.size());
-    for (size_t i = 0; i < image.size(); ++i) {
-        const double from_origin = positions[i / 3][static_cast<int>(i % 3)] - double{units.origin[i % 3]};
-        image[i] = static_cast<float>(from_origin / double{units.step});
-    }
-    return image;
-}
-
-std::vector<Vec3> positions_of(const std::vector<float>& image, const Units& units) {
-    std::vector<Vec3> positions(image.size() / 3);
-    for (size_t i = 0; i < image.size(); ++i) {
-        positions[i / 3][static_cast<int>(i % 3)] = double{units.origin[i % 3]} + double{units.step} * double{image[i]};
-    }
-    return positions;
-}
 
 Progress part_of(const Progress& whole, double begin, double end) {
     if (!whole) return {};
@@ -71,16 +54,12 @@ bool needs_first_fit(const EncodeOptions& options, uint32_t side) {
 }
 
 SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed)
-    : side_(start.side()), seams_(file_seams(start)), fine_(make_fit(start, surface, seed)) {}
-
-CodedFit SquareFit::make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed) {
-    const auto shared = std::make_shared<const FitSurface>(surface);
-    if (const auto half = halved(start)) {
-        coarse_.emplace(*half, square_codec(half->side(), seams_), shared, seed);
-        coarse_distance_ = coarse_->distance();
-    }
-    return {start, square_codec(side_, seams_), shared, seed};
-}
+    : side_(start.side()),
+      seed_(seed),
+      seams_(file_seams(start)),
+      surface_(std::make_shared<const FitSurface>(surface)),
+      half_(halved(start)),
+      fine_(start, square_codec(side_, seams_), surface_, seed) {}
 
 std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, const Progress& progress) {
     if (effort != CodedFit::Effort::kFinal || !is_led_by_coarse(units)) return fine_.run(units, effort, progress);
@@ -88,18 +67,26 @@ std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, co
     return fine_.run(units, CodedFit::Effort::kRefine, part_of(progress, kCoarsePart, 1));
 }
 
-bool SquareFit::is_led_by_coarse(const Units& units) const {
+void SquareFit::begin_coarse() {
+    coarse_.emplace(*half_, square_codec(half_->side(), seams_), surface_, seed_);
+    coarse_distance_ = coarse_->distance();
+    half_.reset();
+}
+
+bool SquareFit::is_led_by_coarse(const Units& units) {
+    if (half_) begin_coarse();
     return coarse_ && coarse_distance_ <= kMostDistance * double{units.quantizer} * double{units.step};
 }
 
 void SquareFit::fit_coarsely(const Units& units, const Progress& progress) {
-    Pyramid<float> pyramid = analyse<Irreversible97>(triples_of(fine_.positions(), units), side_, side_, 1, &seams_);
-    coarse_->place(positions_of(pyramid.base, units));
-    pyramid.base = triples_of(coarse_->run(halved(units), CodedFit::Effort::kCoarse, progress), units);
+    Pyramid<float> pyramid =
+        analyse<Irreversible97>(to_units<float>(fine_.positions(), units), side_, side_, 1, &seams_);
+    coarse_->place(from_units(pyramid.base, units));
+    pyramid.base = to_units<float>(coarse_->run(halved(units), CodedFit::Effort::kCoarse, progress), units);
     AnalysisLevel<float>& details = pyramid.levels[0];
     for (auto* band : {&details.horizontal, &details.vertical, &details.diagonal})
         std::fill(band->begin(), band->end(), 0.0f);
-    fine_.place(positions_of(restore<Irreversible97>(pyramid, &seams_), units));
+    fine_.place(from_units(restore<Irreversible97>(pyramid, &seams_), units));
 }
 
 }  // namespace gim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,15 +38,20 @@ class SquareFit {
     uint64_t folds() const { return fine_.folds(); }
 
   private:
-    CodedFit make_fit(const SquareImage& start, const Mesh& surface, uint64_t seed);
-    bool is_led_by_coarse(const Units& units) const;
+    void begin_coarse();
+    bool is_led_by_coarse(const Units& units);
     // Moves the samples of fine_ to where the coarse image leads them.
     void fit_coarsely(const Units& units, const Progress& progress);
 
     uint32_t side_;
+    uint64_t seed_;
     SeamTable seams_;
-    std::optional<CodedFit> coarse_;  // nothing for small squares, and where the cut has no room on the coarser grid
-    double coarse_distance_ = 0;      // of every second sample, as taken from the surface
+    std::shared_ptr<const FitSurface> surface_;
+    std::optional<SquareImage>
+        half_;  // every second sample, until a full fit needs them; nothing for small squares, and
+                // where the cut has no room on the coarser grid
+    std::optional<CodedFit> coarse_;
+    double coarse_distance_ = 0;  // of every second sample, as taken from the surface
     CodedFit fine_;
 };
 

@@ -56,10 +56,7 @@ void read_charts(std::span<const uint8_t> bytes, uint32_t width, uint32_t height
                 border.coarse = coarse[c].data();
                 border.coarse_columns = charts[c].columns;
                 border.coarse_border_length = static_cast<uint32_t>(coarse[c].size());
-                for (uint32_t p = path; p < path + border.path_count; ++p) {
-                    paths[p].coarse_length = paths[p].length;
-                    paths[p].coarse_first = paths[p].first;
-                }
+                for (uint32_t p = path; p < path + border.path_count; ++p) paths[p].keep_as_coarse();
             }
             if (!coder.code_border(border, paths.data())) return;
             for (uint32_t k = 0; k < border.border_length && k < samples.size(); ++k)

@@ -139,11 +139,9 @@ bool code(Coder& coder, BorderModels& models, Level& level, Glued* glued, const 
             chart.coarse = coarse->walks[c].samples.data();
             chart.coarse_columns = coarse->walks[c].columns;
             chart.coarse_border_length = static_cast<uint32_t>(coarse->walks[c].samples.size());
-            for (uint32_t k = 0, first = 0; k < chart.path_count; ++k) {
-                const uint32_t length = coarse->paths[first_path + k].length;
-                level.paths[first_path + k].coarse_length = length;
-                level.paths[first_path + k].coarse_first = first;
-                first += length;
+            for (uint32_t p = first_path; p < first_path + chart.path_count; ++p) {
+                level.paths[p].coarse_length = coarse->paths[p].length;
+                level.paths[p].coarse_first = coarse->paths[p].first;
             }
         }
         if (!border_coder.code_border(chart, level.paths.data())) return false;

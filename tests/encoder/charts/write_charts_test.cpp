@@ -11,6 +11,7 @@
 #include "encoder/code/file_units.h"
 #include "gim/decoder.hpp"
 #include "tests/encoder/charts/made_charts.h"
+#include "tests/encoder/coding_parameters.h"
 
 namespace gim {
 namespace {
@@ -21,12 +22,6 @@ using Bytes = std::vector<uint8_t>;
 CodingParameters lossless(uint32_t bits = 12) {
     CodingParameters p;
     p.bits = bits;
-    return p;
-}
-CodingParameters lossy(double quantizer) {
-    CodingParameters p;
-    p.lossless = false;
-    p.quantizer = quantizer;
     return p;
 }
 

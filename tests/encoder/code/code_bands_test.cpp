@@ -9,11 +9,14 @@
 #include "encoder/code/file_units.h"
 #include "encoder/squares/write_squares.h"
 #include "gim/decoder.hpp"
+#include "tests/encoder/coding_parameters.h"
 #include "tests/encoder/grid_images.h"
 #include "tests/format/random_sideband.h"
 
 namespace gim {
 namespace {
+
+using test::lossy;
 
 constexpr uint32_t kSide = 129;
 
@@ -22,13 +25,6 @@ SquareImage waves() {
     return image_of(kSide, open_sideband(), [](double u, double v) {
         return Vec3(u + 0.1 * u * u, v + 0.05 * std::sin(5 * u), 0.1 * std::sin(17 * u * u) * std::cos(9 * v));
     });
-}
-
-CodingParameters lossy(double quantizer) {
-    CodingParameters parameters;
-    parameters.lossless = false;
-    parameters.quantizer = quantizer;
-    return parameters;
 }
 
 SeamTable seams_of(const SquareImage& image) {

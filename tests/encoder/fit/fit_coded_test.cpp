@@ -5,41 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corpus/generators.h"
 #include "encoder/base/parallel.h"
 #include "encoder/code/decode_surface.h"
 #include "encoder/image/gluing.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
-#include "encoder/surface/closest_point.h"
 #include "encoder/surface/compare_meshes.h"
-#include "tests/encoder/grid_images.h"
+#include "tests/encoder/fit/bumpy_torus.h"
 
 namespace gim {
 namespace {
 
-constexpr uint32_t kSide = 65;
+using namespace test;
 
-Mesh bumpy_torus() { return mesh_of(corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 4)); }
+constexpr uint32_t kSide = 65;
 
 // Samples of the torus put onto the reference, and fitted to it.
 SquareImage image_on(const Mesh& reference) {
-    SquareImage image = torus_image(kSide, 0.7, 0.3);
-    const ClosestPointTree tree(reference);
-    for (Vec3& p : image.positions) p = tree.find(p).point;
+    SquareImage image = torus_on(reference, kSide);
     image.positions = fit(image, reference, {.strength = FitOptions::Strength::kStiff}).value().positions;
     return image;
-}
-
-CodingParameters lossy(double quantizer) {
-    CodingParameters parameters;
-    parameters.lossless = false;
-    parameters.quantizer = quantizer;
-    return parameters;
-}
-
-Units units_for(const SquareImage& image, double quantizer) {
-    return squares_writer({&image, 1}, lossy(quantizer)).value().header(quantizer);
 }
 
 SquareImage fitted(const SquareImage& start, const Mesh& reference, const Units& units,

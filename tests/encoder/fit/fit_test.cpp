@@ -9,21 +9,15 @@
 #include "corpus/generators.h"
 #include "encoder/image/gluing.h"
 #include "encoder/surface/closest_point.h"
+#include "tests/encoder/fit/bumpy_torus.h"
 #include "tests/encoder/grid_images.h"
 #include "tests/models.h"
 
 namespace gim {
 namespace {
 
-Mesh bumpy_torus() { return mesh_of(corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 4)); }
-
-// Samples of the torus put onto the reference.
-SquareImage image_on(const Mesh& reference, uint32_t side) {
-    SquareImage image = torus_image(side, 0.7, 0.3);
-    const ClosestPointTree tree(reference);
-    for (Vec3& p : image.positions) p = tree.find(p).point;
-    return image;
-}
+using test::bumpy_torus;
+using test::torus_on;
 
 // A bent sheet with a sharp crease at x = 0.1, bounded by a square.
 double height(double x, double y) { return 0.5 * std::abs(x - 0.1) + 0.1 * y * y; }
@@ -43,7 +37,7 @@ double decibels(double better, double worse) { return 20 * std::log10(worse / be
 
 TEST(Fit, ComesNearerBothWays) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference, 65);
+    const SquareImage start = torus_on(reference, 65);
     for (const auto strength : {FitOptions::Strength::kStiff, FitOptions::Strength::kLoose}) {
         const auto result = fit(start, reference, {.strength = strength, .rounds = 6});
         ASSERT_TRUE(result.ok()) << result.error().message;
@@ -58,7 +52,7 @@ TEST(Fit, ComesNearerBothWays) {
 TEST(Fit, OneFoldInThousandsOfSamplesMayComeWithIt) {
     const Mesh reference = bumpy_torus();
     for (const uint32_t side : {65u, 129u}) {
-        const SquareImage start = image_on(reference, side);
+        const SquareImage start = torus_on(reference, side);
         const Fitted fitted = fit(start, reference, {.strength = FitOptions::Strength::kLoose, .rounds = 8}).value();
         EXPECT_TRUE(fitted.improved);
         EXPECT_LE(fitted.after.folds, std::max<uint64_t>(fitted.before.folds, side * side / 8000));
@@ -67,7 +61,7 @@ TEST(Fit, OneFoldInThousandsOfSamplesMayComeWithIt) {
 
 TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
     const Mesh reference = bumpy_torus();
-    SquareImage fitted = image_on(reference, 33);
+    SquareImage fitted = torus_on(reference, 33);
     const auto result = fit(fitted, reference, {});
     ASSERT_TRUE(result.ok());
     fitted.positions = result.value().positions;
@@ -88,7 +82,7 @@ TEST(Fit, ReportsWhatAnIndependentMeasurementFinds) {
 
 TEST(Fit, SeamsStayClosed) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference, 33);
+    const SquareImage start = torus_on(reference, 33);
     const auto result = fit(start, reference, {});
     ASSERT_TRUE(result.ok());
     ASSERT_TRUE(result.value().improved);
@@ -99,7 +93,7 @@ TEST(Fit, SeamsStayClosed) {
 
 TEST(Fit, ThreadsAndRepetitionChangeNothing) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference, 65);
+    const SquareImage start = torus_on(reference, 65);
     const auto one = fit(start, reference, {.rounds = 4, .threads = 1}),
                two = fit(start, reference, {.rounds = 4, .threads = 2});
     ASSERT_TRUE(one.ok() && two.ok());
@@ -111,7 +105,7 @@ TEST(Fit, ThreadsAndRepetitionChangeNothing) {
 TEST(Fit, SideOfTheImageDoesNotMatter) {
     // The same samples with rows and columns exchanged look inwards.
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference, 33);
+    const SquareImage start = torus_on(reference, 33);
     SquareImage turned = start;
     for (uint32_t row = 0; row < 33; ++row) {
         for (uint32_t column = 0; column < 33; ++column) turned.at(column, row) = start.at(row, column);
@@ -147,7 +141,7 @@ TEST(Fit, LooseSamplesFindTheCrease) {
 // Rows are squeezed together in pairs whose samples are exchanged: slivers that lie in the surface upside down.
 TEST(Fit, SqueezedRowsThatCrossAreUnfolded) {
     const Mesh reference = bumpy_torus();
-    SquareImage start = image_on(reference, 65);
+    SquareImage start = torus_on(reference, 65);
     for (uint32_t row = 5; row < 60; row += 4) {
         for (uint32_t column = 2; column < 63; ++column) {
             start.at(row, column) = 0.1 * start.at(row, column) + 0.9 * start.at(row - 1, column);
@@ -177,7 +171,7 @@ TEST(Fit, AnImageThatCannotBeBetteredComesBackUnchanged) {
 
 TEST(Fit, HeldSamplesDoNotMove) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference, 33);
+    const SquareImage start = torus_on(reference, 33);
     std::vector<bool> held(start.positions.size(), false);
     for (size_t v = 400; v < 500; ++v) held[v] = true;
     const auto result = fit(start, reference, {.held = held});
@@ -259,7 +253,7 @@ TEST(Fit, BordersOfChartsOnTheInputBoundaryStayThere) {
 TEST(Fit, ProgressRisesToOne) {
     const Mesh reference = bumpy_torus();
     std::vector<double> heard;
-    (void)fit(image_on(reference, 17), reference, {.rounds = 3}, [&](Stage stage, double fraction) {
+    (void)fit(torus_on(reference, 17), reference, {.rounds = 3}, [&](Stage stage, double fraction) {
         EXPECT_EQ(stage, Stage::kFit);
         heard.push_back(fraction);
         return true;
@@ -271,7 +265,7 @@ TEST(Fit, ProgressRisesToOne) {
 
 TEST(Fit, UnusableInputIsRefused) {
     const Mesh reference = bumpy_torus();
-    SquareImage image = image_on(reference, 17);
+    SquareImage image = torus_on(reference, 17);
     EXPECT_FALSE(fit(image, Mesh{}, {}).ok());
     EXPECT_FALSE(fit(image, reference, {.held = std::vector<bool>(5)}).ok());
     SquareImage short_image = image;

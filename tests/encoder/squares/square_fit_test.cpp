@@ -5,39 +5,19 @@
 #include <algorithm>
 #include <vector>
 
-#include "corpus/generators.h"
 #include "encoder/base/parallel.h"
 #include "encoder/code/decode_surface.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
-#include "encoder/surface/closest_point.h"
 #include "encoder/surface/compare_meshes.h"
-#include "tests/encoder/grid_images.h"
+#include "tests/encoder/fit/bumpy_torus.h"
 
 namespace gim {
 namespace {
 
+using namespace test;
+
 constexpr uint32_t kSide = 257;  // the smallest one that is fitted from coarse to fine
-
-Mesh bumpy_torus() { return mesh_of(corpus::roughened(corpus::torus(60, 30, 0.7, 0.3), 0.01, 4)); }
-
-SquareImage image_on(const Mesh& reference) {
-    SquareImage image = torus_image(kSide, 0.7, 0.3);
-    const ClosestPointTree tree(reference);
-    for (Vec3& p : image.positions) p = tree.find(p).point;
-    return image;
-}
-
-CodingParameters lossy(double quantizer) {
-    CodingParameters parameters;
-    parameters.lossless = false;
-    parameters.quantizer = quantizer;
-    return parameters;
-}
-
-Units units_for(const SquareImage& image, double quantizer) {
-    return squares_writer({&image, 1}, lossy(quantizer)).value().header(quantizer);
-}
 
 std::vector<Vec3> from_coarse_to_fine(const SquareImage& start, const Mesh& reference, const Units& units) {
     return SquareFit(start, reference, 1).run(units, CodedFit::Effort::kFinal);
@@ -64,7 +44,7 @@ Rated rate(SquareImage image, std::vector<Vec3> positions, const Mesh& reference
 
 TEST(SquareFit, GluedSamplesStayEqualAndThreadsChangeNothing) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference);
+    const SquareImage start = torus_on(reference, kSide);
     const Units units = units_for(start, 16);
     std::vector<std::vector<Vec3>> results;
     for (const uint32_t threads : {1u, 3u})
@@ -77,7 +57,7 @@ TEST(SquareFit, GluedSamplesStayEqualAndThreadsChangeNothing) {
 
 TEST(SquareFit, FilesAreAsSmallAndAsNearAsThoseFittedAtOneSide) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference);
+    const SquareImage start = torus_on(reference, kSide);
     const Units units = units_for(start, 16);
     const Rated once = rate(start, at_one_side(start, reference, units), reference, units);
     const Rated twice = rate(start, from_coarse_to_fine(start, reference, units), reference, units);
@@ -88,14 +68,14 @@ TEST(SquareFit, FilesAreAsSmallAndAsNearAsThoseFittedAtOneSide) {
 // Every second sample is then many steps of the quantizer off.
 TEST(SquareFit, AllRoundsRunAtTheFullSideIfTheQuantizerIsFine) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference);
+    const SquareImage start = torus_on(reference, kSide);
     const Units units = units_for(start, 0.05);
     EXPECT_EQ(from_coarse_to_fine(start, reference, units), at_one_side(start, reference, units));
 }
 
 TEST(SquareFit, ProgressRises) {
     const Mesh reference = bumpy_torus();
-    const SquareImage start = image_on(reference);
+    const SquareImage start = torus_on(reference, kSide);
     std::vector<double> heard;
     (void)SquareFit(start, reference, 1)
         .run(units_for(start, 16), CodedFit::Effort::kFinal, [&](Stage stage, double fraction) {
