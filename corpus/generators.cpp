@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 namespace gim::corpus {
@@ -115,6 +116,91 @@ double smooth_union(double a, double b, double width) {
     const double h = std::max(width - std::abs(a - b), 0.0) / width;
     return std::max(a, b) + 0.25 * h * h * width;
 }
+
+// Per vertex, of length 1; zero where no triangle with area is.
+std::vector<Point> vertex_normals(const TriangleMesh& mesh) {
+    std::vector<Point> normals(mesh.positions.size(), Point{0, 0, 0});
+    for (const auto& t : mesh.triangles) {
+        const Point& a = mesh.positions[t[0]];
+        const Point normal = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+        for (const uint32_t v : t) normals[v] = normals[v] + normal;
+    }
+    for (Point& normal : normals) {
+        const double length = norm(normal);
+        if (length > 0) normal = (1 / length) * normal;
+    }
+    return normals;
+}
+
+class Densifier {
+  public:
+    Densifier(const TriangleMesh& mesh, uint32_t parts) : mesh_(mesh), parts_(parts), normals_(vertex_normals(mesh)) {
+        result_.positions = mesh.positions;
+        result_.triangles.reserve(mesh.triangles.size() * parts * parts);
+        for (const auto& t : mesh.triangles) add(t);
+    }
+    TriangleMesh result() && { return std::move(result_); }
+
+  private:
+    using Face = std::array<uint32_t, 3>;
+
+    void add(const Face& t) {
+        // Vertices row by row: row 0 is t[0], the last row runs from t[1] to t[2].
+        std::vector<std::vector<uint32_t>> rows(parts_ + 1);
+        for (uint32_t i = 0; i <= parts_; ++i) {
+            for (uint32_t j = 0; j <= i; ++j) rows[i].push_back(vertex(t, {parts_ - i, i - j, j}));
+        }
+        for (uint32_t i = 0; i < parts_; ++i) {
+            for (uint32_t j = 0; j <= i; ++j) {
+                result_.triangles.push_back({rows[i][j], rows[i + 1][j], rows[i + 1][j + 1]});
+                if (j < i) result_.triangles.push_back({rows[i][j], rows[i + 1][j + 1], rows[i][j + 1]});
+            }
+        }
+    }
+
+    // weights: of the three corners; their sum is parts_.
+    uint32_t vertex(const Face& t, const Face& weights) {
+        for (size_t k = 0; k < 3; ++k) {
+            const size_t a = (k + 1) % 3, b = (k + 2) % 3;
+            if (weights[k] == parts_) return t[k];
+            if (weights[k] == 0 && weights[a] > 0 && weights[b] > 0) return on_edge(t[a], t[b], weights[b]);
+        }
+        return new_vertex(t, weights);
+    }
+
+    // The vertex `weight` parts of the way from a to b. Both faces of an edge share it.
+    uint32_t on_edge(uint32_t a, uint32_t b, uint32_t weight) {
+        if (a > b) {
+            std::swap(a, b);
+            weight = parts_ - weight;
+        }
+        const auto [entry, is_new] = edges_.try_emplace(uint64_t{a} << 32 | b, 0);
+        if (is_new) {
+            entry->second = static_cast<uint32_t>(result_.positions.size());
+            for (uint32_t k = 1; k < parts_; ++k) new_vertex({a, b, b}, {parts_ - k, k, 0});
+        }
+        return entry->second + weight - 1;
+    }
+
+    uint32_t new_vertex(const Face& t, const Face& weights) {
+        constexpr double kRoundness = 0.75;
+        Point flat{0, 0, 0}, round{0, 0, 0};
+        for (size_t k = 0; k < 3; ++k) flat = flat + (double(weights[k]) / parts_) * mesh_.positions[t[k]];
+        for (size_t k = 0; k < 3; ++k) {
+            const Point& normal = normals_[t[k]];
+            const Point on_plane = flat - dot(flat - mesh_.positions[t[k]], normal) * normal;
+            round = round + (double(weights[k]) / parts_) * on_plane;
+        }
+        result_.positions.push_back((1 - kRoundness) * flat + kRoundness * round);
+        return static_cast<uint32_t>(result_.positions.size() - 1);
+    }
+
+    const TriangleMesh& mesh_;
+    uint32_t parts_;
+    std::vector<Point> normals_;
+    std::unordered_map<uint64_t, uint32_t> edges_;  // the first of the vertices inside each
+    TriangleMesh result_;
+};
 
 }  // namespace
 
@@ -333,20 +419,15 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
 }
 
 TriangleMesh roughened(TriangleMesh mesh, double amplitude, uint64_t seed) {
-    std::vector<Point> normals(mesh.positions.size(), Point{0, 0, 0});
-    for (const auto& t : mesh.triangles) {
-        const Point& a = mesh.positions[t[0]];
-        const Point normal = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
-        for (const uint32_t v : t) normals[v] = normals[v] + normal;
-    }
+    const std::vector<Point> normals = vertex_normals(mesh);
     for (size_t v = 0; v < mesh.positions.size(); ++v) {
-        const double length = norm(normals[v]);
-        if (length == 0) continue;
         const double unit = static_cast<double>(mix(mix(seed) + v) >> 11) * 0x1p-52 - 1;
-        mesh.positions[v] = mesh.positions[v] + (amplitude * unit / length) * normals[v];
+        mesh.positions[v] = mesh.positions[v] + amplitude * unit * normals[v];
     }
     return mesh;
 }
+
+TriangleMesh densified(const TriangleMesh& mesh, uint32_t parts) { return Densifier(mesh, parts).result(); }
 
 TriangleMesh soup(const TriangleMesh& mesh) {
     TriangleMesh result;

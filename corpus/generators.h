@@ -39,6 +39,9 @@ TriangleMesh isosurface(const std::function<double(const Point&)>& inside, const
 
 // Displaces every vertex along its normal by up to `amplitude`: a hash of its index says how far.
 TriangleMesh roughened(TriangleMesh mesh, double amplitude, uint64_t seed);
+// Cuts each triangle into parts * parts, on a surface that is round where vertex normals differ: Boubekeur, Alexa. Phong
+// Tessellation. SIGGRAPH Asia 2008. Makes dense scans of sparse ones; parts >= 1.
+TriangleMesh densified(const TriangleMesh& mesh, uint32_t parts);
 // Each triangle with its own three vertices.
 TriangleMesh soup(const TriangleMesh& mesh);
 // Several meshes in one, the k-th shifted along x by k * step.

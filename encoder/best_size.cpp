@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "encoder/code/rate_target.h"
+#include "encoder/effort.h"
 
 namespace gim {
 
@@ -64,7 +65,8 @@ bool try_halves(const CodingRuns& runs, EncodeOptions options, bool may_end_earl
 Result<Encoded> best_of_samples(const CodingRuns& runs, const EncodeOptions& whole) {
     const EncodeOptions half = halved(whole);
     auto best = runs.code(half, {});
-    if (try_halves(runs, half, false, best)) return best;
+    const bool is_enough = try_halves(runs, half, false, best) || (best.ok() && !effort_of(whole).all_sides);
+    if (is_enough) return best;
     auto of_whole = runs.code(whole, {});
     return improves(of_whole, best, whole.rate) ? std::move(of_whole) : std::move(best);
 }
@@ -76,6 +78,7 @@ Result<Encoded> best_of_sizes(const CodingRuns& runs, const EncodeOptions& whole
     if (whole.layout == Layout::kMcgim) return best_of_samples(runs, whole);
     const EncodeOptions half = halved(whole);
     auto best = runs.code(half, {0, true});
+    if (best.ok() && !effort_of(whole).all_sides) return best;
     auto of_whole = runs.code(whole, contest_with(best));
     if (!best.ok() || improves(of_whole, best, whole.rate)) return of_whole;
     try_halves(runs, half, true, best);

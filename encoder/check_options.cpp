@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "encoder/effort.h"
 #include "format/chart_table.h"
 #include "format/quad_complex.h"
 
@@ -56,6 +57,8 @@ Result<void> check_options(const EncodeOptions& options) {
         return wrong("at most " + std::to_string(kMostTiles) + " tiles; not " + std::to_string(options.tiles));
     if (options.charts > kMaxCharts)
         return wrong("at most " + std::to_string(kMaxCharts) + " charts; not " + std::to_string(options.charts));
+    if (options.effort < kLeastEffort || options.effort > kMostEffort)
+        return wrong("the effort must be from 1 to 9; not " + std::to_string(options.effort));
     return {};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "encoder/code/rate_target.h"
+#include "encoder/effort.h"
 #include "encoder/layout/encode_once.h"
 #include "encoder/layouts.h"
 
@@ -28,12 +29,16 @@ double most_to_beat(const Encoded& rival) {
     return log_bytes(double(rival.bytes.size()), rival.report.error.psnr) + std::log1p(kBriefExcess);
 }
 
+bool may_race(const LayoutEntry& entry, const EncodeOptions& options) {
+    return entry.races && (entry.layout == Layout::kGim || effort_of(options).races);
+}
+
 class Race {
   public:
     Race(const Prepared& prepared, const EncodeOptions& options, StageClock& clock, const Observer& observer)
         : prepared_(prepared), options_(options), clock_(clock), observer_(observer) {
         for (const LayoutEntry& entry : all_layouts()) {
-            if (entry.races) entries_.push_back(&entry);
+            if (may_race(entry, options)) entries_.push_back(&entry);
         }
     }
 
@@ -148,7 +153,7 @@ Result<Encoded> race_layouts(const Prepared& prepared, const EncodeOptions& opti
                              const Observer& observer) {
     auto best = Race(prepared, options, clock, observer).run();
     for (const LayoutEntry& entry : all_layouts()) {
-        if (entry.races || !lacks_images(best)) continue;
+        if (may_race(entry, options) || !lacks_images(best)) continue;
         auto other = LayoutRuns(entry, prepared, options, clock, observer).best({});
         if (other.ok()) return other;
     }

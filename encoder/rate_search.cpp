@@ -53,6 +53,7 @@ struct RateSearch::Impl {
         parameters_.lossless = target_.kind == RateTarget::Kind::kLossless;
         quick_.threads = full_.threads = options.threads;
         quick_.samples = Values::kSearchSamples;
+        quick_.vertices = full_.vertices = target_.kind == RateTarget::Kind::kMaxError;
     }
 
     Result<Estimate> estimate(std::optional<double> near) {

@@ -215,6 +215,11 @@ void add_glb_options(CLI::App* sub, EncodeArguments& a) {
 void add_work_options(CLI::App* sub, EncodeArguments& a, uint32_t threads) {
     add_mesh_format(sub, a.command.format,
                     "Format of MESH. Default: its content tells, else its extension. gim: a headerless image");
+    sub->add_option("--effort", a.command.options.effort,
+                    "1: fastest to 9: smallest file. Below 4, auto does not try tiles. Lossless files stay the same")
+        ->check(CLI::Range(1, 9))
+        ->type_name("1..9")
+        ->capture_default_str();
     sub->add_option("--seed", a.command.options.seed, "Same seed, same bytes")->capture_default_str();
     a.command.options.threads = threads;
     sub->add_option("--threads", a.command.options.threads,

@@ -11,6 +11,7 @@
 #include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/file_units.h"
+#include "encoder/effort.h"
 #include "encoder/fit/fit_coded.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/fit/parts_codec.h"
@@ -43,7 +44,7 @@ class ChartsLayout final : public LayoutImages {
             codec_ = codec.get();
             return codec;
         };
-        fit_ = std::make_unique<CodedFit>(charts_.image, make, mesh, options.seed);
+        fit_ = std::make_unique<CodedFit>(charts_.image, make, mesh, options.seed, Rails{}, effort_of(options).rounds);
     }
 
     bool is_fitted_to_quantizer() const override { return is_fitted_; }

@@ -46,23 +46,23 @@ struct Schedule {
 
     int rounds() const;
 };
-constexpr Schedule::Part kCycle = {4, 1}, kLast = {6, 3};
-constexpr int kCycles = 4;
+constexpr Schedule::Part kCycle = {4, 1};
 int Schedule::rounds() const { return cycles * (kCycle.free + kCycle.held) + last.free + last.held; }
 
-Schedule schedule_of(CodedFit::Effort effort) {
+Schedule schedule_of(CodedFit::Effort effort, const FitRounds& rounds) {
+    const Schedule::Part last{rounds.free, rounds.held};
     switch (effort) {
         case CodedFit::Effort::kSearch:
             return {1, {0, 0}};
         case CodedFit::Effort::kCoarse:
-            return {kCycles, {0, 0}};
+            return {rounds.cycles, {0, 0}};
         case CodedFit::Effort::kRefine:
         case CodedFit::Effort::kAdjust:
-            return {0, kLast};
+            return {0, last};
         case CodedFit::Effort::kFinal:
             break;
     }
-    return {kCycles, kLast};
+    return {rounds.cycles, last};
 }
 
 // Part of a distance's pull along the surface, for preconditioning only. From coarse to fine, steps that expect more of it
@@ -75,7 +75,6 @@ float tangential_pull_of(CodedFit::Effort effort) {
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
 constexpr double kDensity = 1.5;  // samples of the reference per face
-constexpr int kMostSteps = 40;
 constexpr double kTolerance = 1e-4;
 
 double dot(const Coordinates& a, const Coordinates& b) {
@@ -137,7 +136,8 @@ class CoordinateSystem {
 };
 
 // Returns the change of the coordinates, by conjugate gradients. c: the current coordinates.
-Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coordinates& c, float scale) {
+Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coordinates& c, float scale,
+                     int most_steps) {
     Coordinates y(c.size(), 0.0f), residual = system.right(scale), z(c.size());
     const auto precondition = [&] { for_all(z.size(), [&](size_t i) { z[i] = prices.inverse[i] * residual[i]; }); };
     for_all(c.size(),
@@ -146,7 +146,7 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
     Coordinates direction = z;
     double rz = dot(residual, z);
     const double goal = kTolerance * rz;
-    for (int k = 0; k < kMostSteps && rz > goal; ++k) {
+    for (int k = 0; k < most_steps && rz > goal; ++k) {
         Coordinates image = system.apply(direction);
         for_all(image.size(),
                 [&](size_t i) { image[i] = prices.inverse[i] > 0 ? image[i] + prices.price[i] * direction[i] : 0; });
@@ -170,13 +170,14 @@ Coordinates minimise(CoordinateSystem& system, const Prices& prices, const Coord
 
 struct CodedFit::Impl {
     Impl(const GeometryImage& start, std::shared_ptr<const FitSurface> fit_surface, uint64_t first_seed,
-         const Rails& rails)
+         const Rails& rails, const FitRounds& fit_rounds)
         : gluing(start.gluing),
           surface(std::move(fit_surface)),
           frame(surface->frame),
           fitter(start.positions, surface->reference, gluing, frame, {.rails = rails}),
           first_positions(fitter.positions()),
-          seed(first_seed) {}
+          seed(first_seed),
+          plan(fit_rounds) {}
 
     GridGluing gluing;
     std::shared_ptr<const FitSurface> surface;
@@ -184,6 +185,7 @@ struct CodedFit::Impl {
     Fitter fitter;
     std::vector<Vec3> first_positions;  // in the frame
     uint64_t seed;
+    FitRounds plan;
     uint64_t rounds = 0;
     std::vector<Vec3> cycled_positions;  // from the last final fit, before its last rounds; in the frame
     uint64_t cycled_rounds = 0;
@@ -219,8 +221,8 @@ struct CodedFit::Impl {
         const auto [basis, c] = codec->coordinates(image, coding);
         const auto unit = static_cast<float>(double{units.step} * frame.scale);  // a unit's length in the frame
         CoordinateSystem coordinates(system, *basis, *codec);
-        const Coordinates y =
-            minimise(coordinates, Prices(*basis, c, coding.quantizer, free, tangential_pull), c, 1 / unit);
+        const Prices prices(*basis, c, coding.quantizer, free, tangential_pull);
+        const Coordinates y = minimise(coordinates, prices, c, 1 / unit, plan.steps);
         codec->follow(y);
         const std::vector<float> change = coordinates.image_of(y);
         std::vector<Vec3> step(fitter.positions().size());
@@ -241,12 +243,13 @@ CodedFit& CodedFit::operator=(CodedFit&&) noexcept = default;
 FitSurface::FitSurface(const Mesh& mesh) : frame(mesh), reference(Mesh{frame.into(mesh.positions), mesh.triangles}) {}
 
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
-                   const Rails& rails)
-    : CodedFit(start, make_codec, std::make_shared<const FitSurface>(reference), seed, rails) {}
+                   const Rails& rails, const FitRounds& rounds)
+    : CodedFit(start, make_codec, std::make_shared<const FitSurface>(reference), seed, rails, rounds) {}
 
 CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec,
-                   std::shared_ptr<const FitSurface> surface, uint64_t seed, const Rails& rails)
-    : impl_(std::make_unique<Impl>(start, std::move(surface), seed, rails)) {
+                   std::shared_ptr<const FitSurface> surface, uint64_t seed, const Rails& rails,
+                   const FitRounds& rounds)
+    : impl_(std::make_unique<Impl>(start, std::move(surface), seed, rails, rounds)) {
     impl_->codec = make_codec({impl_->gluing, impl_->surface->reference, impl_->frame, impl_->fitter.front()});
 }
 
@@ -255,7 +258,7 @@ void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 void CodedFit::repair(std::span<Pyramid<int32_t>> bands, const Units& units) { impl_->codec->repair(bands, units); }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {
-    const Schedule schedule = schedule_of(effort);
+    const Schedule schedule = schedule_of(effort, impl_->plan);
     int done = 0;
     const bool is_alone = impl_->rounds == 0 && effort != Effort::kSearch;
     const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;

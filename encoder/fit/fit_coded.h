@@ -17,6 +17,7 @@
 #include "encoder/code/wavelet_analysis.h"
 #include "encoder/fit/fit.h"
 #include "encoder/fit/fit_codec.h"
+#include "encoder/fit/fit_rounds.h"
 #include "encoder/fit/fitter.h"
 #include "encoder/image/geometry_image.h"
 #include "encoder/image/rails.h"
@@ -40,9 +41,9 @@ class CodedFit {
   public:
     // Copies its arguments. `seed` decides where distances are sampled. Samples stay on their rails.
     CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, const Mesh& reference, uint64_t seed,
-             const Rails& rails = {});
+             const Rails& rails = {}, const FitRounds& rounds = {});
     CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec, std::shared_ptr<const FitSurface> surface,
-             uint64_t seed, const Rails& rails = {});
+             uint64_t seed, const Rails& rails = {}, const FitRounds& rounds = {});
     ~CodedFit();
     CodedFit(CodedFit&&) noexcept;
     CodedFit& operator=(CodedFit&&) noexcept;
@@ -56,8 +57,8 @@ class CodedFit {
     };
     // Continues from the end of the last call; the first call begins at the start. units: of the file to come. Returns
     // the samples, equal where glued. Steps fold nothing over, but the quantizer may. The result does not depend on the
-    // number of threads. Cost: 5 rounds (kSearch), 29 (kFinal), 20 (kCoarse) or 9, each about 0.3 s for 257 x 257 samples on
-    // two cores.
+    // number of threads. Cost, with the usual FitRounds: 5 rounds (kSearch), 29 (kFinal), 20 (kCoarse) or 9, each about
+    // 0.3 s for 257 x 257 samples on two cores.
     std::vector<Vec3> run(const Units& units, Effort effort, const Progress& progress = {});
     // Repairs folds that the quantizer leaves in the bands of such samples (fold_repair.h).
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units);

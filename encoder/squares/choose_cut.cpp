@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "encoder/code/rate_target.h"
+#include "encoder/effort.h"
 #include "encoder/squares/coding_trial.h"
 
 namespace gim {
@@ -32,9 +33,10 @@ void for_each_at_once(std::vector<T>& all, const Body& body) {
 
 // Cuts the surface by every preference and returns the cuts that differ.
 std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
-    const CuttableSurface surface = make_cuttable(mesh, options.side);
+    const CuttableSurface surface = make_cuttable(mesh, options);
     std::vector<Candidate> attempts;
-    for (const CutPreference& preference : kPreferences) attempts.push_back({preference, {}, {}});
+    for (const CutPreference& preference : std::span(kPreferences).first(effort_of(options).cuts))
+        attempts.push_back({preference, {}, {}});
     for_each_at_once(attempts, [&](Candidate& attempt) {
         auto cut = cut_open(surface, options, attempt.preference);
         if (cut.ok()) attempt.cut = std::move(cut.value());

@@ -6,6 +6,7 @@
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/file_units.h"
 #include "encoder/code/rate_target.h"
+#include "encoder/effort.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 
@@ -28,13 +29,15 @@ Result<CodingTrial::Coded> CodingTrial::coded(const SquareImage& image, double q
     parameters.units = units_of({&image, 1}, options_.bits);
     Units units = *parameters.units;
     units.quantizer = quantizer_in_range(quantizer);
-    CodedFit fit(image, square_codec(image.side(), file_seams(image)), fit_surface_, options_.seed);
+    CodedFit fit(image, square_codec(image.side(), file_seams(image)), fit_surface_, options_.seed, Rails{},
+                 effort_of(options_).rounds);
     SquareImage fitted = image;
     fitted.positions = fit.run(units, CodedFit::Effort::kSearch);
     GIM_TRY(bytes, write_squares({&fitted, 1}, parameters));
     CompareOptions quick;
     quick.threads = options_.threads;
     quick.samples = Values::kTrialSamples;
+    quick.vertices = false;
     GIM_TRY(comparison, compare_file(bytes, surface_, quick));
     return Coded{double(bytes.size()), comparison.psnr};
 }

@@ -15,6 +15,7 @@
 #include "encoder/squares/parametrize.h"
 #include "encoder/squares/sample_square.h"
 #include "encoder/squares/square_fit.h"
+#include "encoder/surface/coarsened.h"
 #include "encoder/surface/refine.h"
 #include "encoder/surface/stretch.h"
 
@@ -54,8 +55,10 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 
 }  // namespace
 
-CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side) {
-    Mesh fine = refine_large_faces(mesh, largest_face(side) * surface_area(mesh));
+CuttableSurface make_cuttable(const Mesh& mesh, const EncodeOptions& options) {
+    const double samples = double(options.side) * options.side;
+    const Mesh coarsened = is_fitted_to_codec(options) ? coarsened_for(mesh, samples) : mesh;
+    Mesh fine = refine_large_faces(coarsened, largest_face(options.side) * surface_area(coarsened));
     Topology topology = build_topology(fine);
     CoarseSurface coarse = coarsen(fine, kSearchVertices);
     return {std::move(fine), std::move(topology), std::move(coarse)};
@@ -117,7 +120,7 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
 Result<MadeSquare> make_square(const Mesh& mesh, const EncodeOptions& options, const CutPreference& preference,
                                StageClock& clock, const Observer& observer) {
     clock.begin(Stage::kCut);
-    GIM_TRY(cut, cut_open(make_cuttable(mesh, options.side), options, preference, clock.progress(), observer));
+    GIM_TRY(cut, cut_open(make_cuttable(mesh, options), options, preference, clock.progress(), observer));
     return map_and_sample(cut, mesh, options, clock, observer);
 }
 

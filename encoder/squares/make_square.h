@@ -32,11 +32,11 @@ struct MadeSquare {
 
 // A clean connected mesh, prepared for cutting. Several cuts may be tried on it.
 struct CuttableSurface {
-    Mesh mesh;  // with large faces split
+    Mesh mesh;  // coarsened if the samples are fitted to the codec, then with large faces split
     Topology topology;
     CoarseSurface coarse;
 };
-CuttableSurface make_cuttable(const Mesh& mesh, uint32_t side);
+CuttableSurface make_cuttable(const Mesh& mesh, const EncodeOptions& options);
 
 // A surface that is cut open. Its boundary lies on that of the square.
 struct CutSurface {

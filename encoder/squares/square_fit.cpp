@@ -53,13 +53,14 @@ bool needs_first_fit(const EncodeOptions& options, uint32_t side) {
     return !is_fitted_to_codec(options) || is_searched(options.rate) || side < kLeastSideFromCoarse;
 }
 
-SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed)
+SquareFit::SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed, const FitRounds& rounds)
     : side_(start.side()),
       seed_(seed),
+      rounds_(rounds),
       seams_(file_seams(start)),
       surface_(std::make_shared<const FitSurface>(surface)),
       half_(halved(start)),
-      fine_(start, square_codec(side_, seams_), surface_, seed) {}
+      fine_(start, square_codec(side_, seams_), surface_, seed, Rails{}, rounds) {}
 
 std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, const Progress& progress) {
     if (effort != CodedFit::Effort::kFinal || !is_led_by_coarse(units)) return fine_.run(units, effort, progress);
@@ -68,7 +69,7 @@ std::vector<Vec3> SquareFit::run(const Units& units, CodedFit::Effort effort, co
 }
 
 void SquareFit::begin_coarse() {
-    coarse_.emplace(*half_, square_codec(half_->side(), seams_), surface_, seed_);
+    coarse_.emplace(*half_, square_codec(half_->side(), seams_), surface_, seed_, Rails{}, rounds_);
     coarse_distance_ = coarse_->distance();
     half_.reset();
 }

@@ -27,7 +27,7 @@ bool needs_first_fit(const EncodeOptions& options, uint32_t side);
 class SquareFit {
   public:
     // Copies its arguments. The image's sideband must be valid.
-    SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed);
+    SquareFit(const SquareImage& start, const Mesh& surface, uint64_t seed, const FitRounds& rounds = {});
 
     // As CodedFit. A full fit (kFinal) of a large square first fits its low band, as an image of half the side. The finest
     // details then begin at zero. Where every second sample shows too little of the surface, all rounds run at the full
@@ -45,6 +45,7 @@ class SquareFit {
 
     uint32_t side_;
     uint64_t seed_;
+    FitRounds rounds_;
     SeamTable seams_;
     std::shared_ptr<const FitSurface> surface_;
     std::optional<SquareImage>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
+#include "encoder/effort.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/squares/square_fit.h"
 #include "encoder/squares/square_texels.h"
@@ -80,7 +81,7 @@ class SquaresLayout final : public LayoutImages {
     void make_fits(const EncodeOptions& options) {
         for (size_t i = 0; i < squares_.surfaces.size(); ++i) {
             const SquareImage& image = squares_.images[i];
-            fits_.emplace_back(image, squares_.surfaces[i], options.seed);
+            fits_.emplace_back(image, squares_.surfaces[i], options.seed, effort_of(options).rounds);
             if (!needs_first_fit(options, image.side())) folds_before_fit_ += fits_.back().folds();
             squares_.surfaces[i] = {};  // the fit has its own copy
         }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -60,7 +61,7 @@ std::vector<Vec3> referenced_vertices(const Mesh& mesh) {
 struct Side {
     const Mesh& mesh;
     const ClosestPointTree& tree;
-    std::vector<Vec3> normals;
+    const std::vector<Vec3>& normals;
 };
 
 struct OneWay {
@@ -109,15 +110,19 @@ double angle_sum(const Side& from, const Side& to, const PairedSamples& pairs, u
     });
 }
 
-// Tries vertices too, because the largest distance is usually at one. They do not enter the mean.
+// The largest distance is usually at a vertex. Vertices do not enter the mean.
 OneWay distance_to(const Side& from, const Side& to, const CompareOptions& options) {
     OneWay result;
     result.pairs.samples = sample_by_area(from.mesh, options.samples, options.seed, options.threads);
     const std::vector<Vec3>& points = result.pairs.samples.points;
     result.pairs.found.resize(options.normals || options.defects ? points.size() : 0);
     const Squares inside = squared_distances(points, to.tree, options.threads, result.pairs.found);
-    const Squares corners = squared_distances(referenced_vertices(from.mesh), to.tree, options.threads);
-    result.largest = std::sqrt(std::max(inside.largest, corners.largest));
+    result.largest = inside.largest;
+    if (options.vertices) {
+        const Squares corners = squared_distances(referenced_vertices(from.mesh), to.tree, options.threads);
+        result.largest = std::max(result.largest, corners.largest);
+    }
+    result.largest = std::sqrt(result.largest);
     result.has_area = !points.empty();
     if (!result.has_area) return result;
     const auto count = static_cast<double>(points.size());
@@ -145,19 +150,45 @@ double bounding_diagonal(const Mesh& mesh) {
     return (high - low).norm();
 }
 
+class ReferenceSurface::Traits {
+  public:
+    const std::vector<Vec3>& normals(const Mesh& mesh) {
+        once(has_normals_, [&] { normals_ = shading_normals(mesh, NormalWeight::kArea); });
+        return normals_;
+    }
+    const DefectTraits& defects(const Mesh& mesh) {
+        once(has_defects_, [&] { defects_ = defect_traits(mesh); });
+        return defects_;
+    }
+
+  private:
+    // Isolated: a thread that waits for the work's own tasks must not begin another comparison, which would wait for it.
+    template <class Work>
+    static void once(std::once_flag& flag, const Work& work) {
+        std::call_once(flag, [&] { tbb::this_task_arena::isolate(work); });
+    }
+
+    std::once_flag has_normals_, has_defects_;
+    std::vector<Vec3> normals_;
+    DefectTraits defects_;
+};
+
 ReferenceSurface::ReferenceSurface(Mesh mesh, uint32_t threads)
-    : mesh_(std::move(mesh)), tree_(mesh_, threads), diagonal_(bounding_diagonal(mesh_)) {}
+    : mesh_(std::move(mesh)),
+      tree_(mesh_, threads),
+      diagonal_(bounding_diagonal(mesh_)),
+      traits_(std::make_unique<Traits>()) {}
+ReferenceSurface::~ReferenceSurface() = default;
 
 Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOptions& options) const {
     const auto no_area = [](const char* which) {
         return Error{Stage::kCompare,
                      "the " + std::string(which) + " mesh has no area: all its triangles are degenerate"};
     };
-    const auto normals_of = [&](const Mesh& mesh) {
-        return options.normals ? shading_normals(mesh, NormalWeight::kArea) : std::vector<Vec3>();
-    };
     const ClosestPointTree test_tree(test, options.threads);
-    const Side reference_side{mesh_, tree_, normals_of(mesh_)}, test_side{test, test_tree, normals_of(test)};
+    const std::vector<Vec3> none, test_normals = options.normals ? shading_normals(test, NormalWeight::kArea) : none;
+    const Side reference_side{mesh_, tree_, options.normals ? traits_->normals(mesh_) : none};
+    const Side test_side{test, test_tree, test_normals};
     const OneWay to_test = distance_to(reference_side, test_side, options);
     if (!to_test.has_area) return no_area("reference");
     const OneWay to_reference = distance_to(test_side, reference_side, options);
@@ -178,7 +209,8 @@ Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOpti
                                      .mean = (to_test.degrees + to_reference.degrees) / 2};
     }
     if (options.defects) {
-        result.defects = measure_defects(test, mesh_, tree_, to_reference.pairs, to_test.pairs, options.threads);
+        const DefectReference reference{mesh_, tree_, traits_->defects(mesh_)};
+        result.defects = measure_defects(test, reference, to_reference.pairs, to_test.pairs, options.threads);
         if (result.rms > 0) {
             result.defects->max_over_rms = result.hausdorff / result.rms;
             result.defects->p999_over_rms =

@@ -1,5 +1,7 @@
-// Compares many surfaces with one reference. Does what compare() does, but builds the reference's search tree once.
+// Compares many surfaces with one reference. Does what compare() does, but prepares the reference once.
 #pragma once
+
+#include <memory>
 
 #include "encoder/surface/closest_point.h"
 #include "encoder/surface/mesh.h"
@@ -14,16 +16,23 @@ class ReferenceSurface {
   public:
     // Keeps the mesh. Its positions must be finite and its indices in range.
     explicit ReferenceSurface(Mesh mesh, uint32_t threads = 0);
+    ReferenceSurface(const ReferenceSurface&) = delete;
+    ReferenceSurface& operator=(const ReferenceSurface&) = delete;
+    ~ReferenceSurface();
 
-    // Does what compare() does. The positions of `test` must be finite and its indices in range.
+    // Does what compare() does. The positions of `test` must be finite and its indices in range. Several threads may call it at
+    // once.
     Result<Comparison> compare(const Mesh& test, const CompareOptions& options) const;
     const Mesh& mesh() const { return mesh_; }
     double diagonal() const { return diagonal_; }
 
   private:
+    class Traits;
+
     Mesh mesh_;
     ClosestPointTree tree_;
     double diagonal_;
+    std::unique_ptr<Traits> traits_;  // found when they are first asked for
 };
 
 }  // namespace gim

@@ -8,6 +8,7 @@
 #include "encoder/base/disjoint_sets.h"
 #include "encoder/base/parallel.h"
 #include "encoder/surface/shading_normals.h"
+#include "encoder/surface/topology_summary.h"
 
 namespace gim {
 
@@ -71,30 +72,21 @@ std::vector<uint8_t> find_folded_faces(const Mesh& test, const Mesh& reference, 
 }
 
 std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh) {
-    struct Side {
-        uint64_t edge;
-        uint32_t face;
-    };
     const std::vector<uint32_t> first = first_at_position(mesh);
-    std::vector<Side> sides;
-    sides.reserve(3 * mesh.triangles.size());
-    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-        const Triangle& t = mesh.triangles[f];
-        for (size_t i = 0; i < 3; ++i) {
-            const auto [a, b] = std::minmax(first[t[i]], first[t[(i + 1) % 3]]);
-            if (a != b) sides.push_back({uint64_t{a} << 32 | b, f});
-        }
+    std::vector<Triangle> joined = mesh.triangles;
+    for (Triangle& t : joined) {
+        for (uint32_t& v : t) v = first[v];
     }
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.face < b.face; });
+    const EdgeTable table = build_edge_table(joined, mesh.positions.size());
     std::vector<std::array<uint32_t, 2>> edges;
-    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
-        for (end = i + 1; end < sides.size() && sides[end].edge == sides[i].edge;) ++end;
-        if (end - i != 2) continue;
-        const Vec3 a = face_normal(mesh, mesh.triangles[sides[i].face]);
-        const Vec3 b = face_normal(mesh, mesh.triangles[sides[i + 1].face]);
-        if (a.dot(b) < kFoldedBack)
-            edges.push_back({static_cast<uint32_t>(sides[i].edge >> 32), static_cast<uint32_t>(sides[i].edge)});
+    for (size_t e = 0; e < table.size(); ++e) {
+        const auto around = table.around(e);
+        if (around.size() != 2) continue;
+        const uint32_t h = around[0];
+        const Vec3 a = face_normal(mesh, mesh.triangles[face_of(h)]);
+        const Vec3 b = face_normal(mesh, mesh.triangles[face_of(around[1])]);
+        const auto [from, to] = std::minmax(joined[face_of(h)][h % 3], joined[face_of(h)][next(h) % 3]);
+        if (a.dot(b) < kFoldedBack) edges.push_back({from, to});
     }
     return edges;
 }
@@ -164,23 +156,27 @@ double percentile(std::vector<double>& values, double part) {
     return values[index];
 }
 
-Defects measure_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& reference_tree,
-                        const PairedSamples& from_test, const PairedSamples& from_reference, uint32_t threads) {
+DefectTraits defect_traits(const Mesh& mesh) {
+    return {shading_normals(mesh, NormalWeight::kAngle), find_folded_back_edges(mesh).size()};
+}
+
+Defects measure_defects(const Mesh& test, const DefectReference& reference, const PairedSamples& from_test,
+                        const PairedSamples& from_reference, uint32_t threads) {
     Defects defects;
-    const std::vector<uint8_t> folded = find_folded_faces(test, reference, reference_tree, threads);
+    const std::vector<uint8_t> folded = find_folded_faces(test, reference.mesh, reference.tree, threads);
     defects.folded_faces = static_cast<uint64_t>(std::count(folded.begin(), folded.end(), 1));
     defects.largest_fold = find_largest_fold(test, folded);
-    defects.folded_area = folded_share(test, reference, from_test, threads);
-    defects.folded_back_edges = find_folded_back_edges(test).size();
-    defects.folded_back_edges_of_reference = find_folded_back_edges(reference).size();
+    defects.folded_area = folded_share(test, reference.mesh, from_test, threads);
+    const DefectTraits traits = defect_traits(test);
+    defects.folded_back_edges = traits.folded_back_edges;
+    defects.folded_back_edges_of_reference = reference.traits.folded_back_edges;
 
-    const std::vector<Vec3> test_normals = shading_normals(test, NormalWeight::kAngle),
-                            reference_normals = shading_normals(reference, NormalWeight::kAngle);
-    std::vector<double> angles = normal_angles(test, test_normals, reference, reference_normals, from_test, threads);
+    std::vector<double> angles =
+        normal_angles(test, traits.normals, reference.mesh, reference.traits.normals, from_test, threads);
     defects.off_by_20 = share_above(angles, 20);
     defects.off_by_45 = share_above(angles, 45);
     const std::vector<double> others =
-        normal_angles(reference, reference_normals, test, test_normals, from_reference, threads);
+        normal_angles(reference.mesh, reference.traits.normals, test, traits.normals, from_reference, threads);
     angles.insert(angles.end(), others.begin(), others.end());
     defects.normals_p95 = percentile(angles, 0.95);
     defects.normals_p99 = percentile(angles, 0.99);

@@ -1,8 +1,8 @@
 // Finds what a person sees wrong in a surface whose distances are small: faces folded over, edges folded back, wrong
 // shading. gim/encoder.h, Defects, has the definitions.
 //
-// In: two meshes of any topology, closest points between them. Cost: O(F log F) for the reference's search tree, that
-// of a closest point for each face, and O(samples). The number of threads does not change the result.
+// In: two meshes of any topology, closest points between them. Cost: O(F log F), that of a closest point for each face, and
+// O(samples). The number of threads does not change the result.
 #pragma once
 
 #include <array>
@@ -35,10 +35,24 @@ std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh);
 // largest area.
 Defects::Fold find_largest_fold(const Mesh& mesh, const std::vector<uint8_t>& folded);
 
+// What defects need to know of a surface.
+struct DefectTraits {
+    std::vector<Vec3> normals;       // shading normals, weighted by angle
+    uint64_t folded_back_edges = 0;  // see find_folded_back_edges()
+};
+DefectTraits defect_traits(const Mesh& mesh);
+
+// A reference, prepared for many comparisons.
+struct DefectReference {
+    const Mesh& mesh;
+    const ClosestPointTree& tree;
+    const DefectTraits& traits;
+};
+
 // Measures the defects of `test` but for the two figures over the RMS distance. from_test, from_reference: samples on
 // that surface.
-Defects measure_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& reference_tree,
-                        const PairedSamples& from_test, const PairedSamples& from_reference, uint32_t threads);
+Defects measure_defects(const Mesh& test, const DefectReference& reference, const PairedSamples& from_test,
+                        const PairedSamples& from_reference, uint32_t threads);
 
 // Does what map_defects() does.
 DefectMap locate_defects(const Mesh& test, const Mesh& reference, const ClosestPointTree& tree, uint32_t threads);

@@ -26,7 +26,7 @@ std::vector<uint8_t> find_doubles(const std::vector<Triangle>& places, std::span
         std::sort(t.begin(), t.end());
         keys[f] = {t, f};
     }
-    std::sort(keys.begin(), keys.end());
+    tbb::parallel_sort(keys.begin(), keys.end());
     std::vector<uint32_t> partner(places.size(), kNone);
     for (size_t k = 1; k < keys.size(); ++k) {
         const uint32_t f = keys[k - 1].second, g = keys[k].second;

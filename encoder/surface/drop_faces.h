@@ -1,6 +1,8 @@
 // Drops faces that repeat others or have collapsed.
 #pragma once
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -32,7 +34,7 @@ template <class NameOf, class MayGo>
 void drop_duplicates(std::vector<Triangle>& triangles, const NameOf& names_of, const MayGo& may_go, uint64_t& count) {
     std::vector<std::pair<Triangle, uint32_t>> keys(triangles.size());
     for (uint32_t f = 0; f < triangles.size(); ++f) keys[f] = {rotated(names_of(triangles[f])), f};
-    std::sort(keys.begin(), keys.end());
+    tbb::parallel_sort(keys.begin(), keys.end());
     std::vector<uint8_t> is_marked(triangles.size(), 0);
     for (size_t k = 1; k < keys.size(); ++k) {
         if (keys[k].first == keys[k - 1].first && may_go(keys[k].second)) is_marked[keys[k].second] = 1;

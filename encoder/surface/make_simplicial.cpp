@@ -1,5 +1,7 @@
 #include "encoder/surface/make_simplicial.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -43,7 +45,7 @@ class Splitter {
             std::sort(t.begin(), t.end());
             keys.emplace_back(t, f);
         }
-        std::sort(keys.begin(), keys.end());
+        tbb::parallel_sort(keys.begin(), keys.end());
         for (size_t k = 1; k < keys.size(); ++k) {
             if (keys[k].first == keys[k - 1].first) split_face(keys[k].second);
         }

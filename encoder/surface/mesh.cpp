@@ -1,27 +1,21 @@
 #include "encoder/surface/mesh.h"
 
-#include <algorithm>
-#include <utility>
+#include "encoder/surface/topology_summary.h"
 
 namespace gim {
 
 namespace {
 
-// Pairs half-edges that run along the same edge, by sorting them on their (smaller, larger) vertex.
+// Pairs the half-edges that run along the same edge.
 std::vector<uint32_t> pair_half_edges(const Mesh& mesh) {
-    const auto count = static_cast<uint32_t>(3 * mesh.triangles.size());
-    std::vector<std::pair<uint64_t, uint32_t>> keys(count);
-    for (uint32_t h = 0; h < count; ++h) {
-        const uint64_t a = from(mesh, h), b = to(mesh, h);
-        keys[h] = {std::min(a, b) << 32 | std::max(a, b), h};
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<uint32_t> twin(count, kNone);
-    for (uint32_t k = 0; k + 1 < count; ++k) {
-        if (keys[k].first != keys[k + 1].first) continue;
-        twin[keys[k].second] = keys[k + 1].second;
-        twin[keys[k + 1].second] = keys[k].second;
-        ++k;
+    std::vector<uint32_t> twin(3 * mesh.triangles.size(), kNone);
+    const EdgeTable edges = build_edge_table(mesh.triangles, mesh.positions.size());
+    for (size_t e = 0; e < edges.size(); ++e) {
+        const auto around = edges.around(e);
+        for (size_t k = 0; k + 1 < around.size(); k += 2) {
+            twin[around[k]] = around[k + 1];
+            twin[around[k + 1]] = around[k];
+        }
     }
     return twin;
 }

@@ -1,5 +1,7 @@
 #include "encoder/surface/normal_breaks.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +41,7 @@ class Breaks {
                 if (a != b) sides_.push_back({key_of(a, b), 3 * f + i, a < b});
             }
         }
-        std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+        tbb::parallel_sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
             return a.key != b.key ? a.key < b.key : a.half_edge < b.half_edge;
         });
         for (size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {

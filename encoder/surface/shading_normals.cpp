@@ -1,6 +1,7 @@
 #include "encoder/surface/shading_normals.h"
 
-#include <algorithm>
+#include <tbb/parallel_sort.h>
+
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -30,7 +31,7 @@ std::vector<uint32_t> first_at_position(const Mesh& mesh) {
         const Vec3& p = mesh.positions[v];
         return std::array{p[0], p[1], p[2]};
     };
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    tbb::parallel_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         const auto at_a = place(a), at_b = place(b);
         return at_a != at_b ? at_a < at_b : a < b;
     });

@@ -1,5 +1,7 @@
 #include "encoder/surface/weld_places.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -29,7 +31,7 @@ uint64_t hash_of(const std::array<int64_t, 3>& cell) {
 std::vector<uint32_t> number_places(const std::vector<Point>& positions) {
     std::vector<uint32_t> order(positions.size());
     for (uint32_t v = 0; v < order.size(); ++v) order[v] = v;
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    tbb::parallel_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
     });
     std::vector<uint32_t> place(positions.size());

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "encoder/effort.h"
 #include "format/quad_complex.h"
 #include "format/tile_atlas.h"
 
@@ -122,7 +123,7 @@ Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const En
 
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
     GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
-    if (given.tiles != 0) return trials.cheapest_first();
+    if (given.tiles != 0 || !effort_of(given).all_counts) return trials.cheapest_first();
     const TriedTiles first = trials.cheapest_first()[0];
     if (first.options.creases) {
         for (const uint32_t tiles : kOthersWithCreases) trials.add(in_number(first.options, tiles));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
+#include "encoder/effort.h"
 #include "encoder/fit/fit_coded.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/tiles/sample_tiles.h"
@@ -23,7 +24,7 @@ class TilesLayout final : public LayoutImages {
         take_samples();
     }
 
-    Result<void> make_fit(const Mesh& mesh, uint64_t seed) {
+    Result<void> make_fit(const Mesh& mesh, const EncodeOptions& options) {
         Result<void> made;
         const MakeFitCodec make = [&](const FitSetting& setting) -> std::unique_ptr<FitCodec> {
             auto codec = TileCodec::make(made_.tiles, setting);
@@ -34,7 +35,7 @@ class TilesLayout final : public LayoutImages {
             made = codec.error();
             return nullptr;
         };
-        fit_.emplace(made_.atlas, make, mesh, seed, made_.rails);
+        fit_.emplace(made_.atlas, make, mesh, options.seed, made_.rails, effort_of(options).rounds);
         return made;
     }
 
@@ -108,7 +109,7 @@ class TilesLayout final : public LayoutImages {
 Result<std::unique_ptr<LayoutImages>> tiles_layout(MadeTiles made, const Mesh& mesh, const EncodeOptions& options) {
     GIM_TRY(sample_at, samples_of_atlas(made.tiles));
     auto layout = std::make_unique<TilesLayout>(std::move(made), std::move(sample_at));
-    if (is_fitted_to_codec(options)) GIM_CHECK(layout->make_fit(mesh, options.seed));
+    if (is_fitted_to_codec(options)) GIM_CHECK(layout->make_fit(mesh, options));
     return std::unique_ptr<LayoutImages>(std::move(layout));
 }
 

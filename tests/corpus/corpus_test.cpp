@@ -51,6 +51,26 @@ TEST(Corpus, SizesGoFromAHundredToTwentyThousandTriangles) {
     EXPECT_LE(largest, 30000u);
 }
 
+TEST(Corpus, DenseMeshesHaveTheSameTopologyAndRounderFaces) {
+    const uint32_t parts = 5;
+    const TriangleMesh coarse = sphere(6), dense = densified(coarse, parts);
+    EXPECT_EQ(dense.triangles.size(), parts * parts * coarse.triangles.size());
+    const TopologySummary s = summarize_topology(dense);
+    EXPECT_TRUE(s.watertight);
+    EXPECT_EQ(s.genus, 0);
+    EXPECT_EQ(s.vertices, dense.positions.size());
+    const TriangleMesh fine = sphere(60);
+    const double of_coarse = compare(fine, coarse, {.samples = 20000}).value().psnr;
+    EXPECT_GT(compare(fine, dense, {.samples = 20000}).value().psnr, of_coarse + 6);
+}
+
+TEST(Corpus, DenseMeshesKeepBoundaries) {
+    const TopologySummary s = summarize_topology(densified(annulus(6, 24, 0.4), 4));
+    EXPECT_TRUE(s.manifold);
+    EXPECT_EQ(s.boundary_loops, 2U);
+    EXPECT_EQ(s.euler, 0);
+}
+
 TEST(Corpus, ManifestListsWhatIsThere) {
     std::ifstream file(std::string(GIM_SOURCE_DIR) + "/corpus/manifest.csv");
     ASSERT_TRUE(file);

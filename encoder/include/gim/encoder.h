@@ -109,12 +109,12 @@ using Progress = std::function<bool(Stage stage, double fraction)>;
 // ---- comparing ------------------------------------------------------------------------------------------------------
 
 struct CompareOptions {
-    // Area-stratified samples per direction. The Hausdorff distance also uses the vertices.
-    uint32_t samples = 500000;
-    uint64_t seed = 1;     // the same seed gives the same figures
-    uint32_t threads = 0;  // 0: all cores; the result does not depend on it
-    bool normals = false;  // also measure Comparison::normals; takes about a fifth more time
-    bool defects = false;  // also measure Comparison::defects; takes about half more time
+    uint32_t samples = 500000;  // per direction, area-stratified
+    bool vertices = true;       // the largest distances are also taken at the vertices
+    uint64_t seed = 1;          // the same seed gives the same figures
+    uint32_t threads = 0;       // 0: all cores; the result does not depend on it
+    bool normals = false;       // also measure Comparison::normals; takes about a fifth more time
+    bool defects = false;       // also measure Comparison::defects; takes about half more time
 };
 
 // Mean angle, in degrees, between the shading normal of a sample and that of the nearest point on the other surface.
@@ -260,6 +260,7 @@ struct EncodeOptions {
     // lossy ones. Planes are always lossy.
     std::optional<double> plane_quality;
 
+    uint32_t effort = 5;  // 1 (fastest) .. 9 (smallest file); of lossy files. README.md has a table
     uint64_t seed = 1;
     uint32_t threads = 0;  // 0: all cores; the bytes do not depend on it
 };

@@ -104,7 +104,7 @@ SquareBoundary limbs_cut_open(uint32_t side) {
     const Mesh mesh = clean(corpus::limbed_blob(24)).value().mesh;
     EncodeOptions options;
     options.side = side;
-    return cut_open(make_cuttable(mesh, side), options, {}).value().boundary;
+    return cut_open(make_cuttable(mesh, options), options, {}).value().boundary;
 }
 
 TEST(Parametrize, SqueezeKeepsSamplesOnLongLimbsFromCrowdingInOneDirection) {
