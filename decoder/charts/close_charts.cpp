@@ -1,6 +1,6 @@
 #include "decoder/charts/close_charts.h"
 
-#include <cstring>
+#include <bit>
 
 #include "format/chart_ramp.h"
 #include "format/close_seams.h"
@@ -8,18 +8,18 @@
 namespace gim {
 namespace {
 
-// Calls f(i) for every border sample. Most groups of eight have none.
+// Calls f(i) for every border sample, in order. Looks at eight at a time, without a branch for each.
 template <class F>
 void for_each_border_sample(const uint8_t* depth, size_t count, const F& f) {
     static_assert(kOnBorder == 0);
-    constexpr uint64_t kOnes = 0x0101010101010101u, kHighs = 0x8080808080808080u;
+    constexpr uint64_t kLows = 0x7F7F7F7F7F7F7F7Fu;
     size_t i = 0;
     for (; i + 8 <= count; i += 8) {
-        uint64_t group = 0;
-        std::memcpy(&group, depth + i, 8);
-        if (((group - kOnes) & ~group & kHighs) == 0) continue;  // no byte is 0
-        for (size_t k = i; k < i + 8; ++k)
-            if (depth[k] == kOnBorder) f(k);
+        uint64_t group = 0;  // compilers load it at once
+        for (size_t k = 0; k < 8; ++k) group |= uint64_t{depth[i + k]} << (8 * k);
+        // The high bit of each byte that is 0. No carry leaves a byte.
+        uint64_t on_border = ~(((group & kLows) + kLows) | group | kLows);
+        for (; on_border != 0; on_border &= on_border - 1) f(i + static_cast<size_t>(std::countr_zero(on_border)) / 8);
     }
     for (; i < count; ++i)
         if (depth[i] == kOnBorder) f(i);

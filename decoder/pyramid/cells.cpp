@@ -2,6 +2,25 @@
 
 namespace gim {
 
+void write_cells(const uint32_t* above, const uint32_t* below, const uint32_t* is_main, uint32_t cells,
+                 uint32_t* __restrict out) {
+    for (uint32_t i = 0; i < cells; ++i, out += 6)
+        write_cell(above[i], above[i + 1], below[i], below[i + 1], is_main[i] != 0, out);
+}
+
+void write_rising_cells(uint32_t a, uint32_t c, const uint32_t* is_main, uint32_t cells, uint32_t* __restrict out) {
+    const uint32_t b = a + 1, d = c + 1;
+    for (uint32_t i = 0; i < cells; ++i, out += 6) {
+        const bool main = is_main[i] != 0;
+        out[0] = a + i;
+        out[1] = b + i;
+        out[2] = main ? d + i : c + i;
+        out[3] = main ? a + i : b + i;
+        out[4] = d + i;
+        out[5] = c + i;
+    }
+}
+
 void split_row(const float* samples, size_t side, float* __restrict row) {
     for (size_t i = 0; i < side; ++i) {
         row[i] = samples[3 * i];
