@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "format/inline.h"
+
 namespace gim {
 namespace {
 
@@ -12,7 +14,8 @@ constexpr size_t row_size(uint32_t columns) { return (size_t{columns} + 2) * 3; 
 constexpr int32_t kNothing[3] = {0, 0, 0};
 
 // Writes the magnitudes of columns begin .. end-1 of a row. Columns outside the band, at most one at either end, get 0.
-void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
+GIM_ALWAYS_INLINE void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end,
+                                       uint32_t* __restrict to) {
     const ptrdiff_t inner_begin = std::max<ptrdiff_t>(begin, 0);
     const ptrdiff_t inner_end = row < band.rows ? std::clamp<ptrdiff_t>(band.columns, inner_begin, end) : inner_begin;
     std::fill(to + begin * 3, to + inner_begin * 3, 0u);
@@ -24,7 +27,8 @@ void load_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t 
 }
 
 // Adds the magnitudes of another row.
-void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end, uint32_t* __restrict to) {
+GIM_ALWAYS_INLINE void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t end,
+                                      uint32_t* __restrict to) {
     if (row >= band.rows) return;
     const int32_t* from = band.row(row);
     const ptrdiff_t inner_end = std::min<ptrdiff_t>(band.columns, end);
@@ -32,8 +36,8 @@ void add_magnitudes(const Band& band, uint32_t row, ptrdiff_t begin, ptrdiff_t e
 }
 
 // Weighs each parent and its four neighbours, for the two columns below it, of an even row and the next.
-void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row, uint32_t begin, uint32_t end,
-                   uint32_t* to) {
+GIM_ALWAYS_INLINE void weigh_parents(const Band& parent, const BandWeights* weights, uint32_t row, uint32_t begin,
+                                     uint32_t end, uint32_t* to) {
     const uint32_t inside = row < parent.rows ? std::clamp(parent.columns, begin, end) : begin;
     if (begin < inside) {
         const BandWeights first = weights[0], later = weights[1];
@@ -68,7 +72,8 @@ struct Beside {
 
 // Sums up all that is expected in a row. kBeside: whether other bands add to it.
 template <bool kBeside>
-void weigh(const BandWeights* weights, const Beside& beside, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+GIM_ALWAYS_INLINE void weigh(const BandWeights* weights, const Beside& beside, ptrdiff_t begin, ptrdiff_t end,
+                             const BandWork& work) {
     const BandWeights first = weights[0], later = weights[1];
     const uint32_t *above = work.magnitudes, *parents = work.parents, *alone = beside.alone, *paired = beside.paired;
     uint32_t* __restrict expected = work.expected;
@@ -85,7 +90,8 @@ void weigh(const BandWeights* weights, const Beside& beside, ptrdiff_t begin, pt
 }
 
 // Loads what the bands that are coded before have around the columns begin .. end-1 of a row.
-Beside load_beside(const BandSurroundings& around, uint32_t row, ptrdiff_t begin, ptrdiff_t end, const BandWork& work) {
+GIM_ALWAYS_INLINE Beside load_beside(const BandSurroundings& around, uint32_t row, ptrdiff_t begin, ptrdiff_t end,
+                                     const BandWork& work) {
     const BandWeights &first = around.weights[0], &later = around.weights[1];
     const bool vertical = around.orientation == Orientation::kVertical;
     const ptrdiff_t from = vertical ? begin - 1 : begin;
@@ -109,7 +115,8 @@ BandWork::BandWork(uint32_t* memory, uint32_t columns) {
 
 size_t BandWork::size(uint32_t columns) { return row_size(columns) * kRows + block_count(columns); }
 
-void expect(const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end, const BandWork& work) {
+GIM_VECTOR_CLONES void expect(const BandSurroundings& around, uint32_t row, uint32_t begin, uint32_t end,
+                              const BandWork& work) {
     const auto first = static_cast<ptrdiff_t>(begin), last = static_cast<ptrdiff_t>(end);
     if (around.parent && row % 2 == 0)
         weigh_parents(*around.parent, around.weights, row / 2, begin / 2, (end + 1) / 2, work.parents);

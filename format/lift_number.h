@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "format/inline.h"
+
 namespace gim {
 
 // A number of an image whose kind is known at run time only: the bits of an int32_t or of a float. It may stand for memory
@@ -73,7 +75,8 @@ class LiftFloat {
 
 // to[i] from a[i] and b[i]. `to` overlaps neither a nor b.
 template <class Lift, class Sample>
-void lift_numbers(const Lift& lift, Sample* __restrict to, const Sample* a, const Sample* b, size_t count) {
+GIM_ALWAYS_INLINE void lift_numbers(const Lift& lift, Sample* __restrict to, const Sample* a, const Sample* b,
+                                    size_t count) {
     for (size_t i = 0; i < count; ++i) to[i] = lift(to[i], a[i], b[i]);
 }
 

@@ -7,9 +7,13 @@ void lift_tile_rows(const LiftStep& step, void* samples, const RowBlock& block) 
     using Sample = typename Lift::Sample;
     const Lift lift(step);
     auto* s = static_cast<Sample*>(samples);
-    for (uint32_t row = 0; row < block.rows; ++row) {
+    const auto gapless = static_cast<ptrdiff_t>(block.count);
+    const bool is_one = block.target.stride == gapless && block.a.stride == gapless && block.b.stride == gapless;
+    const uint32_t rows = is_one ? 1 : block.rows;
+    const size_t count = is_one ? block.count * block.rows : block.count;
+    for (uint32_t row = 0; row < rows; ++row) {
         const Sample *a = s + block.a.at(row), *b = s + block.b.at(row);
-        lift_numbers(lift, s + block.target.at(row), a, b, block.count);
+        lift_numbers(lift, s + block.target.at(row), a, b, count);
     }
 }
 

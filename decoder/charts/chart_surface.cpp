@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "decoder/pyramid/cells.h"
 #include "decoder/pyramid/vector3.h"
 #include "format/chart_split.h"
 
@@ -43,6 +44,25 @@ class TriangleSink {
             out_.triangles += 3;
         }
         if (out_.normals) add_normal({a, b, c});
+    }
+
+    // Adds cells of a row in which no two corners are one point. first: the first sample; is_main: how each is split.
+    void add_cells(uint32_t first, uint32_t columns, const uint32_t* is_main, uint32_t cells) {
+        const bool fits = count_ <= capacity_ && 2 * cells <= capacity_ - count_;
+        count_ += 2 * cells;
+        if (!fits) return;
+        if (out_.triangles) {
+            if (out_.names)
+                write_cells(out_.names + first, out_.names + first + columns, is_main, cells, out_.triangles);
+            else
+                write_rising_cells(first, first + columns, is_main, cells, out_.triangles);
+            out_.triangles += size_t{6} * cells;
+        }
+        for (uint32_t i = 0; out_.normals && i < cells; ++i) {
+            const uint32_t a = first + i, b = a + 1, c = a + columns, d = c + 1;
+            add_normal({a, b, is_main[i] ? d : c});
+            add_normal({is_main[i] ? a : b, d, c});
+        }
     }
 
   private:
@@ -92,13 +112,18 @@ void add_border_cell(const ChartGrid& grid, uint32_t row, uint32_t column, uint3
     main ? sink->add(a, c, d) : sink->add(b, c, d);
 }
 
-// A cell whose samples are all inside: no two of them are one point.
-void add_inner_cell(uint32_t i, uint32_t columns, const float* samples, TriangleSink* sink) {
-    const std::array<uint32_t, 4> corners = {i, i + 1, i + columns + 1, i + columns};
-    const auto [a, b, c, d] = corners;
-    const bool main = main_is_shorter(samples, corners);
-    sink->add_proper(a, b, main ? c : d);
-    sink->add_proper(main ? a : b, c, d);
+// Cells of a row whose samples are all inside: no two corners of one are one point. first: the first sample.
+void add_inner_cells(uint32_t first, uint32_t columns, uint32_t cells, const float* samples, TriangleSink* sink) {
+    constexpr uint32_t kCells = 64;
+    float upper[3 * (kCells + 1)], lower[3 * (kCells + 1)];
+    uint32_t is_main[kCells];
+    for (uint32_t done = 0; done < cells; done += kCells) {
+        const uint32_t count = std::min(cells - done, kCells), i = first + done;
+        split_row(samples + size_t{i} * 3, count + 1, upper);
+        split_row(samples + size_t{i + columns} * 3, count + 1, lower);
+        find_shorter_main(upper, lower, count + 1, is_main);
+        sink->add_cells(i, columns, is_main, count);
+    }
 }
 
 bool is_inside(uint8_t depth) { return depth != kOnBorder && depth != kUndefined; }
@@ -114,15 +139,20 @@ bool triangulate_charts(const ChartLevelShape& shape, const ChartWorkspace& ws, 
         const ChartGrid grid = {ws.depth + chart.first, ws.point + chart.first, chart.columns};
         for (uint32_t row = 0; row + 1 < chart.rows; ++row) {
             const uint8_t *upper = grid.depth + size_t{row} * chart.columns, *lower = upper + chart.columns;
-            bool left = is_inside(upper[0]) && is_inside(lower[0]);
-            for (uint32_t column = 0; column + 1 < chart.columns; ++column) {
-                const bool right = is_inside(upper[column + 1]) && is_inside(lower[column + 1]);
-                if (left && right) {
-                    add_inner_cell(chart.first + grid.index(row, column), chart.columns, samples, &sink);
-                } else {
-                    add_border_cell(grid, row, column, chart.first, samples, &sink);
+            for (uint32_t column = 0; column + 1 < chart.columns;) {
+                static_assert(kUndefined == UINT8_MAX);
+                if ((upper[column] & upper[column + 1] & lower[column] & lower[column + 1]) == kUndefined) {
+                    ++column;
+                    continue;
                 }
-                left = right;
+                const uint32_t begin = column;  // of samples that are inside in both rows
+                while (column < chart.columns && is_inside(upper[column]) && is_inside(lower[column])) ++column;
+                if (column - begin > 1)
+                    add_inner_cells(chart.first + grid.index(row, begin), chart.columns, column - begin - 1, samples,
+                                    &sink);
+                if (column > begin) --column;  // the last of them begins a cell of the border, if any
+                if (column + 1 < chart.columns) add_border_cell(grid, row, column, chart.first, samples, &sink);
+                ++column;
             }
         }
     }

@@ -4,6 +4,8 @@
 // Normals come from triangles: charts are too ragged for differences along rows and columns.
 #pragma once
 
+#include <algorithm>
+
 #include "decoder/charts/chart_decoder.h"
 
 namespace gim {
@@ -19,6 +21,20 @@ void for_each_chart_vertex(const ChartLevelShape& shape, const ChartWorkspace& w
             if (ws.depth[sample] == kUndefined || ws.point[sample] != next) continue;
             f(next++, chart, i % chart.columns, i / chart.columns, sample);
         }
+    }
+}
+
+// Calls f(vertex, sample, count) for all vertices in runs: their first samples follow each other. May run on from chart
+// to chart.
+template <class F>
+void for_each_chart_run(const ChartLevelShape& shape, const ChartWorkspace& ws, const F& f) {
+    const auto is_first = [&](size_t sample, uint32_t vertex) {
+        return ws.depth[sample] != kUndefined && ws.point[sample] == vertex;
+    };
+    uint32_t next = 0;
+    for (size_t begin = 0, end = 0; begin < shape.samples; begin = std::max(end, begin + 1)) {
+        for (end = begin; end < shape.samples && is_first(end, next); ++end) ++next;
+        if (end > begin) f(next - static_cast<uint32_t>(end - begin), begin, end - begin);
     }
 }
 

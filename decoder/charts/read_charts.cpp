@@ -98,12 +98,15 @@ Status decode_chart_mesh(const LevelRequest& request, const SurfaceArrays& out, 
     const Header& header = request.header;
     const uint32_t level = request.level;
     const ChartLevelShape& shape = surface.shape;
-    for_each_chart_vertex(
-        shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row, uint32_t sample) {
-            to_object(header.origin, header.step, surface.samples + size_t{sample} * 3, out.positions + size_t{v} * 3);
-            if (out.texcoords)
+    for_each_chart_run(shape, surface.ws, [&](uint32_t v, size_t sample, size_t count) {
+        to_object(header.origin, header.step, surface.samples + sample * 3, out.positions + size_t{v} * 3, count);
+    });
+    if (out.texcoords) {
+        for_each_chart_vertex(
+            shape, surface.ws, [&](uint32_t v, const DecodedChart& chart, uint32_t column, uint32_t row, uint32_t) {
                 set_texcoords(header, chart.box, column << level, row << level, out.texcoords + size_t{v} * 2);
-        });
+            });
+    }
     const ChartTriangles triangles = {surface.ws.point, out.triangles, out.normals};
     return triangulate_charts(shape, surface.ws, surface.samples, triangles) ? Status::kOk : Status::kMalformed;
 }

@@ -1,6 +1,7 @@
 #include "decoder/charts/zip_charts.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace gim {
 namespace {
@@ -85,12 +86,24 @@ struct BorderReader {
         }
         for (uint32_t row = 0; row < chart.rows; ++row) {
             uint8_t inside = 0;
-            for (uint8_t* d = depth + size_t{row} * columns; d < depth + size_t{row + 1} * columns; ++d) {
+            uint8_t *d = depth + size_t{row} * columns, *end = d + columns;
+            while (d < end) {
+                uint64_t group = 1;
+                if (end - d >= 8) std::memcpy(&group, d, 8);
+                if (group == 0) {  // eight samples without a border
+                    std::fill_n(d, 8, inside ? kInside : kUndefined);
+                    d += 8;
+                    continue;
+                }
                 inside ^= *d & kToggleBit;
                 *d = *d & kBorderBit ? kOnBorder : inside ? kInside : kUndefined;
+                ++d;
             }
         }
-        for (uint32_t i = 0; i < count; ++i) ws.point[chart.first + i] = chart.first + i;
+        for (uint32_t k = 0; k < length; ++k) {
+            const uint32_t i = chart.first + chart.border.samples[k];
+            ws.point[i] = i;
+        }
         return true;
     }
 };
@@ -107,6 +120,10 @@ uint32_t number_points(const ChartLevelShape& shape, const ChartWorkspace& ws) {
     uint32_t next = 0;
     for (uint32_t i = 0; i < shape.samples; ++i) {
         if (ws.depth[i] == kUndefined) continue;
+        if (ws.depth[i] != kOnBorder) {
+            ws.point[i] = next++;
+            continue;
+        }
         // A parent's own entry holds its number already.
         const uint32_t parent = ws.point[i];
         ws.point[i] = parent == i ? next++ : ws.point[parent];

@@ -7,9 +7,9 @@
 namespace gim {
 
 // Reads the borders and zippers of stream_level. Those of the coarser levels were read before, unless it is the coarsest
-// one. If that is the requested level, also fills ws.depth and makes ws.point
-// a forest over flat samples in which parents come before their children. Returns false on borders that no encoder
-// writes.
+// one. If that is the requested level, also fills ws.depth and makes ws.point a forest over the border samples, by flat
+// index, in which parents come before their children. Those of other samples are not set. Returns false on borders that
+// no encoder writes.
 bool read_borders(const ChartLevelShape& shape, const ChartWorkspace& ws, uint32_t stream_level, bool is_coarsest,
                   RangeDecoder& decoder);
 

@@ -19,6 +19,13 @@ inline void write_cell(uint32_t a, uint32_t b, uint32_t c, uint32_t d, bool main
     out[5] = c;
 }
 
+// As write_cell, for a row of cells. above, below: the vertices of both rows, one more than cells. is_main: 0 or 1 for each.
+GIM_NEVER_INLINE void write_cells(const uint32_t* above, const uint32_t* below, const uint32_t* is_main, uint32_t cells,
+                                  uint32_t* __restrict out);
+// The same for vertices that rise by 1 along both rows, from a and from c on.
+GIM_NEVER_INLINE void write_rising_cells(uint32_t a, uint32_t c, const uint32_t* is_main, uint32_t cells,
+                                         uint32_t* __restrict out);
+
 // Splits a row of samples into x, y and z, so that compilers vectorise loops over it.
 GIM_NEVER_INLINE void split_row(const float* samples, size_t side, float* __restrict row);
 

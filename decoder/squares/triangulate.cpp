@@ -7,23 +7,6 @@
 #include "format/seam.h"
 
 namespace gim {
-namespace {
-
-// As write_cell, for cells whose vertices rise by 1 along both rows. is_main: 0 or 1 for each.
-void write_inner_cells(uint32_t a, uint32_t c, const uint32_t* is_main, uint32_t cells, uint32_t* __restrict out) {
-    const uint32_t b = a + 1, d = c + 1;
-    for (uint32_t i = 0; i < cells; ++i, out += 6) {
-        const bool main = is_main[i] != 0;
-        out[0] = a + i;
-        out[1] = b + i;
-        out[2] = main ? d + i : c + i;
-        out[3] = main ? a + i : b + i;
-        out[4] = d + i;
-        out[5] = c + i;
-    }
-}
-
-}  // namespace
 
 uint32_t VertexNumbers::at(uint32_t row, uint32_t column) const {
     if (!class_of) return row * side + column;
@@ -58,7 +41,7 @@ void triangulate(const float* samples, uint32_t side, const uint32_t* class_of, 
             write_rim_cells(0, cells);
         } else {
             write_rim_cells(0, 1);
-            write_inner_cells(numbers.at(r, 1), numbers.at(r + 1, 1), is_main + 1, cells - 2, triangles + 6);
+            write_rising_cells(numbers.at(r, 1), numbers.at(r + 1, 1), is_main + 1, cells - 2, triangles + 6);
             write_rim_cells(cells - 1, cells);
         }
     }

@@ -27,6 +27,17 @@ struct TileCoding {
 // Lets the decoder take part in traversals that ask a writer for the complex.
 struct NoSource {};
 
+// Does what join_planes does, row by row.
+void join_rows(const TilePlanes& planes, const Number* tile, Number* grid) {
+    const size_t h = planes.h, row = 3 * h, low_row = row + 3, width = 3 * (2 * h + 1);
+    for (size_t r = 0; r <= h; ++r) {
+        interleave(h + 1, h, tile + r * low_row, tile + planes.horizontal() + r * row, grid + 2 * r * width);
+        if (r < h)
+            interleave(h + 1, h, tile + planes.vertical() + r * low_row, tile + planes.diagonal() + r * row,
+                       grid + (2 * r + 1) * width);
+    }
+}
+
 void scale(float* values, size_t count, float factor) {
     for (size_t i = 0; i < count; ++i) values[i] = values[i] * factor;
 }
@@ -99,7 +110,7 @@ class TileDecoder {
         const bool is_last = step == steps_ - level_;
         const size_t stride = is_last ? planes.size() : samples_after(step);
         for (uint32_t t = 0; t < complex.tiles; ++t)
-            join_planes(planes, samples(step - 1) + t * planes.size(), samples(step) + t * stride);
+            join_rows(planes, samples(step - 1) + t * planes.size(), samples(step) + t * stride);
         return true;
     }
 

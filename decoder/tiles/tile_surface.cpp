@@ -26,8 +26,8 @@ void triangulate_tiles(const TileSurface& surface, const TriangulateTilesWork& w
                 work.is_main[0] = r == 0;
                 work.is_main[last] = r == last;
             }
-            for (uint32_t c = 0; c < side; ++c, triangles += 6)
-                write_cell(above[c], above[c + 1], below[c], below[c + 1], work.is_main[c] != 0, triangles);
+            write_cells(above, below, work.is_main, side, triangles);
+            triangles += size_t{6} * side;
             std::swap(top, bottom);
             std::swap(above, below);
         }

@@ -58,10 +58,13 @@ struct MeshNumbers {
     // Sets the numbers of a row, of side + 1 samples.
     void load(uint32_t tile, uint32_t row, uint32_t* numbers) const {
         numbers[0] = samples.at(tile, row, 0);
-        const bool inner = row > 0 && row < side;
-        const uint32_t first = inner ? samples.inner(tile) + (row - 1) * (side - 1) : 0;
-        for (uint32_t c = 1; c < side; ++c) numbers[c] = inner ? first + c - 1 : samples.at(tile, row, c);
         numbers[side] = samples.at(tile, row, side);
+        if (row > 0 && row < side) {
+            const uint32_t first = samples.inner(tile) + (row - 1) * (side - 1);
+            for (uint32_t c = 1; c < side; ++c) numbers[c] = first + c - 1;
+        } else {
+            for (uint32_t c = 1; c < side; ++c) numbers[c] = samples.at(tile, row, c);
+        }
     }
 };
 struct GridNumbers {
