@@ -36,6 +36,7 @@ class RasterRun {
           scale_(scale),
           options_(options),
           positions_(raster_positions(image)),
+          units_(units()),
           gluing_(glued()),
           reference_(reference_of(surface(), options.threads)) {}
 
@@ -101,11 +102,11 @@ class RasterRun {
     }
     RasterGluing glued() const {
         RasterGluing gluing = glue_raster(image_, positions_, tolerance());
-        open_crowded_edges(image_.width, image_.height, units(), gluing);
+        open_crowded_edges(image_.width, image_.height, units_, gluing);
         return gluing;
     }
     Mesh surface() const {
-        return raster_surface(gluing_, raster_triangles(gluing_, image_.width, image_.height, units()), positions_);
+        return raster_surface(gluing_, raster_triangles(gluing_, image_.width, image_.height, units_), positions_);
     }
     // Quantizers rise by equal factors from 1 on. The last one leaves two bits.
     double quantizer(int step) const { return std::exp2(double(step) / kStepsPerOctave); }
@@ -155,6 +156,7 @@ class RasterRun {
     const RasterScale& scale_;
     const EncodeOptions& options_;
     std::vector<Vec3> positions_;
+    std::vector<float> units_;
     RasterGluing gluing_;
     std::optional<ReferenceSurface> reference_;  // none without a triangle
 };
