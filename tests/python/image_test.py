@@ -60,6 +60,18 @@ class EncodeImage(unittest.TestCase):
         exact, coarse = gim.encode_image(array, mask, lossless=True, **FAST), gim.encode_image(array, mask, psnr=45, **FAST)
         self.assertLess(len(coarse), len(exact))
 
+    def test_samples_are_fitted_to_a_mesh(self):
+        row, column = np.meshgrid(np.arange(17.0), np.arange(17.0), indexing="ij")
+        coarse = np.stack([column, row, np.zeros_like(row)], -1).astype("float32")
+        flat = coarse.reshape(-1, 3) + np.float32([0, 0, 0.5])
+        faces = [(i, i + 1, i + 18, i + 17) for r in range(16) for i in range(17 * r, 17 * r + 16)]
+        for refit in ((flat, faces), ):
+            back, _ = gim.open(gim.encode_image(coarse, refit=refit, lossless=True, bits=16, **FAST)).array()
+            np.testing.assert_allclose(back[..., 2], 0.5, atol=1e-3)
+        with self.assertRaises(gim.Error) as caught:
+            gim.encode_image(coarse, refit="nowhere.ply", lossless=True, **FAST)
+        self.assertIn("nowhere.ply", str(caught.exception))
+
     def test_what_is_no_image_is_refused(self):
         for array, mask in ((np.zeros((4, 4)), None), (np.zeros((8, 8, 3)), np.zeros((8, 8), bool)),
                             (np.zeros((8, 8, 3)), np.ones((8, 7), bool)), (np.array([[["a"] * 3] * 8] * 8), None)):
