@@ -85,23 +85,21 @@ uint32_t count_pieces(const RasterGluing& g, uint32_t width, uint32_t height) {
     std::vector<uint8_t> seen(g.depth.size(), 0);
     std::vector<uint32_t> queue;
     uint32_t pieces = 0;
+    const auto visit = [&](uint32_t i) {
+        if (seen[i] || g.depth[i] == kUndefined) return;
+        seen[i] = 1;
+        queue.push_back(i);
+    };
     for (uint32_t start = 0; start < seen.size(); ++start) {
-        if (seen[start] || g.depth[start] == kUndefined) continue;
-        ++pieces;
-        seen[start] = 1;
-        queue.assign(1, start);
+        visit(start);
+        pieces += queue.empty() ? 0 : 1;
         while (!queue.empty()) {
-            const uint32_t row = queue.back() / width, column = queue.back() % width;
+            const uint32_t i = queue.back(), row = i / width, column = i % width;
             queue.pop_back();
-            for (uint32_t r = row - 1; r != row + 2; ++r) {
-                for (uint32_t c = column - 1; c != column + 2; ++c) {
-                    if (r >= height || c >= width) continue;
-                    const uint32_t i = r * width + c;
-                    if (seen[i] || g.depth[i] == kUndefined) continue;
-                    seen[i] = 1;
-                    queue.push_back(i);
-                }
-            }
+            if (row > 0) visit(i - width);
+            if (row + 1 < height) visit(i + width);
+            if (column > 0) visit(i - 1);
+            if (column + 1 < width) visit(i + 1);
         }
     }
     return pieces;

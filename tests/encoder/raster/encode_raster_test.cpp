@@ -150,6 +150,19 @@ TEST(EncodeRaster, BordersThatCoincideAreGlued) {
     EXPECT_TRUE(coarse.manifold);
 }
 
+// Each chart is a component of the decoded surface, where no borders coincide.
+TEST(EncodeRaster, PiecesThatTouchAtCornersAreCharts) {
+    const auto charts = [](MaskRule mask) {
+        const Encoded file = encoded(raster_of(24, 16, mask, 3));
+        EXPECT_EQ(file.report.charts, topology_of(file.bytes).components);
+        return file.report.charts;
+    };
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return (r < 8) == (c < 12); }), 2u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return r / 4 % 2 == c / 4 % 2; }), 12u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return r + 3 < c || r > c; }), 2u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return (r < 9 && c < 13) || (r > 7 && c > 11); }), 1u);
+}
+
 TEST(EncodeRaster, BordersWithinTheToleranceAreGluedAndStayExact) {
     const RasterImage image = folded_raster(24, 10, 2);
     EXPECT_EQ(encoded(image).report.open_samples, 4u * 8 + 4 * 12);
