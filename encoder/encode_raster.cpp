@@ -21,6 +21,7 @@
 #include "encoder/raster/raster_surface.h"
 #include "encoder/raster/fit_raster.h"
 #include "encoder/raster/write_raster.h"
+#include "encoder/raster/zip_borders.h"
 #include "encoder/surface/compare_meshes.h"
 #include "gim/refit.h"
 
@@ -66,8 +67,7 @@ struct Raster {
 };
 
 Raster with_surface(const RasterImage& image, RasterScale scale, RasterGluing gluing,
-                    const std::vector<Vec3>& positions) {
-    const std::vector<float> units = units_of(positions, scale);
+                    const std::vector<Vec3>& positions, const std::vector<float>& units) {
     open_crowded_edges(image.width, image.height, units, gluing);
     Mesh surface = raster_surface(gluing, raster_triangles(gluing, image.width, image.height, units), positions);
     return {&image, std::move(scale), std::move(gluing), std::move(surface)};
@@ -76,8 +76,11 @@ Raster with_surface(const RasterImage& image, RasterScale scale, RasterGluing gl
 Result<Raster> glued(const RasterImage& image, const EncodeOptions& options) {
     GIM_TRY(scale, scale_raster(image, options.bits));
     const std::vector<Vec3> positions = raster_positions(image);
-    RasterGluing gluing = glue_raster(image, positions, weld_tolerance(image, positions, options));
-    Raster raster = with_surface(image, std::move(scale), std::move(gluing), positions);
+    const double tolerance = weld_tolerance(image, positions, options);
+    RasterGluing gluing = glue_raster(image, positions, tolerance);
+    const std::vector<float> units = units_of(positions, scale);
+    zip_borders(image.width, image.height, units, positions, tolerance, gluing);
+    Raster raster = with_surface(image, std::move(scale), std::move(gluing), positions, units);
     if (raster.surface.triangles.empty())
         return Error{Stage::kInput, "the mask leaves no surface: no cell of four samples has three that are defined"};
     return raster;
@@ -174,7 +177,8 @@ class RasterRun {
         char text[120];
         std::snprintf(text, sizeof text, " and so many samples: the fitted image has %.2f dB, at most %.3g away",
                       best.value().psnr, best.value().hausdorff);
-        return "out of reach with " + bits + text;
+        const bool is_loose = options_.fit == FitStrength::kLoose;
+        return "out of reach with " + bits + text + (is_loose ? "" : "; a loose fit may come nearer (--fit loose)");
     }
 
     const RasterImage& image_;
@@ -273,8 +277,9 @@ Result<Encoded> run_refit(const RasterImage& image, const TriangleMesh& mesh, co
         fitted = std::move(refitted.image);
     }
     GIM_TRY(scale, scale_raster(fitted, options.bits));
-    const Raster raster =
-        with_surface(fitted, std::move(scale), std::move(start.gluing), raster_positions(fitted));
+    const std::vector<Vec3> positions = raster_positions(fitted);
+    const std::vector<float> units = units_of(positions, scale);
+    const Raster raster = with_surface(fitted, std::move(scale), std::move(start.gluing), positions, units);
     describe_image(raster, report);
     warn_of_crowds(topology_of(raster.surface), report);
     return code({raster, reference, true, options}, reference, std::move(report), options.threads, clock);
