@@ -47,8 +47,8 @@ Result<Encoded> run_stages(const std::vector<float>& channels, uint32_t side, do
     StageClock clock(progress);
     clock.begin(Stage::kInput);
     GIM_TRY(image, import_image(channels, side, weld_tolerance));
-    GIM_CHECK(check_extent(image.positions, options.bits, Stage::kInput,
-                           [&](size_t i) { return sample_name(image, i); }));
+    GIM_CHECK(
+        check_extent(image.positions, options.bits, Stage::kInput, [&](size_t i) { return sample_name(image, i); }));
     const LocalFrame frame = choose_frame(image.positions, options.bits);
     move_into(frame, image.positions);
 

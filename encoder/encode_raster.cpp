@@ -16,10 +16,10 @@
 #include "encoder/code/rate_target.h"
 #include "encoder/file_run.h"
 #include "encoder/fit/fit_strength.h"
+#include "encoder/raster/fit_raster.h"
 #include "encoder/raster/glue_raster.h"
 #include "encoder/raster/quantize_raster.h"
 #include "encoder/raster/raster_surface.h"
-#include "encoder/raster/fit_raster.h"
 #include "encoder/raster/write_raster.h"
 #include "encoder/raster/zip_borders.h"
 #include "encoder/surface/compare_meshes.h"
@@ -271,8 +271,8 @@ Result<Encoded> run_refit(const RasterImage& image, const TriangleMesh& mesh, co
     RasterImage fitted = image;
     if (const auto fit = fit_of(image, options)) {
         clock.begin(Stage::kFit);
-        GIM_TRY(refitted, fit_raster(image, start.gluing, raster_positions(image), reference.mesh(), *fit,
-                                       clock.progress()));
+        GIM_TRY(refitted,
+                fit_raster(image, start.gluing, raster_positions(image), reference.mesh(), *fit, clock.progress()));
         report.folds_before_fit = refitted.before.folds;
         fitted = std::move(refitted.image);
     }

@@ -206,11 +206,12 @@ void add_file_options(CLI::App* sub, EncodeArguments& a) {
 }
 
 void add_refit_option(CLI::App* sub, EncodeArguments& a) {
-    sub->add_option("--refit", a.command.refit,
-                    "Image: fit its samples to this mesh, which it must show in the same coordinates. --psnr and "
-                    "--max-error then count against the mesh. With --lossless the samples are fitted first and then kept "
-                    "exactly. --fit says how far samples move; auto: stiff if there are channels besides x y z. Default: "
-                    "no sample moves")
+    sub->add_option(
+           "--refit", a.command.refit,
+           "Image: fit its samples to this mesh, which it must show in the same coordinates. --psnr and "
+           "--max-error then count against the mesh. With --lossless the samples are fitted first and then kept "
+           "exactly. --fit says how far samples move; auto: stiff if there are channels besides x y z. Default: "
+           "no sample moves")
         ->type_name("MESH");
 }
 
@@ -316,7 +317,8 @@ Subcommand add_encode(CLI::App& app) {
         "size tells its side. gim imports it with the parametrization that it has.\n"
         "MESH may also be a multi-chart image of another program, as .npz or .exr: x y z of each sample, a mask, "
         "other\n"
-        "channels. Each sample stays where it is, unless --refit names the mesh. With --lossless whole numbers are exact, and floats are rounded to\n"
+        "channels. Each sample stays where it is, unless --refit names the mesh. With --lossless whole numbers are "
+        "exact, and floats are rounded to\n"
         "--bits of the bounding box. Borders that coincide are glued. gim decode OUT.gim BACK.npz gives the image "
         "back.\n"
         "If OUT is a .glb and MESH is glTF, the scene stays: nodes, materials, animations, cameras, lights. Each mesh\n"

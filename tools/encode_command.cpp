@@ -196,7 +196,8 @@ Result<Encoded> encode_by_command(const EncodeCommand& command, const Input& inp
     const Result<TriangleMesh> mesh =
         read_surface_aloud(command.refit, 0, {.want = Want::kShape, .max_memory = command.max_memory});
     if (!mesh.ok())
-        return Error{mesh.error().stage, "--refit " + shown_name(command.refit, Direction::kRead) + ": " + mesh.error().message};
+        return Error{mesh.error().stage,
+                     "--refit " + shown_name(command.refit, Direction::kRead) + ": " + mesh.error().message};
     ProgressPrinter printer(command.quiet);
     return refit_input(input, mesh.value(), command.options, printer.callback());
 }
@@ -210,7 +211,8 @@ Result<Encoded> refit_input(const Input& input, const TriangleMesh& mesh, const 
                            options, progress);
     }
     if (input.kind != Input::Kind::kRaster)
-        return Error{Stage::kInput, "--refit fits an image to a mesh (.npz, .exr, or a headerless .gim), and this is none"};
+        return Error{Stage::kInput,
+                     "--refit fits an image to a mesh (.npz, .exr, or a headerless .gim), and this is none"};
     if (auto layout = check_raster_layout(options); !layout.ok()) return layout.error();
     return refit_raster(input.raster, mesh, options, progress);
 }
@@ -257,8 +259,7 @@ int run_encode(const EncodeCommand& command) {
         const Result<void> made = pictures.make_folder();
         if (!made.ok()) return report_error(command.debug_folder, made.error());
     }
-    Result<Encoded> encoded =
-        encode_by_command(command, input.value(), draws ? pictures.observer() : Observer());
+    Result<Encoded> encoded = encode_by_command(command, input.value(), draws ? pictures.observer() : Observer());
     if (draws) {  // of a failed run too: there they are needed most
         const Result<void> drawn = pictures.finish();
         if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());

@@ -18,10 +18,11 @@ Result<FitQuality> measure_start(const GeometryImage& image, const Mesh& mesh, u
     const double distance = std::max(quality.to_image, quality.to_reference), diagonal = bounding_diagonal(mesh);
     if (distance <= kFarthest * diagonal) return quality;
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "image and mesh lie %.3g apart on the average, and the mesh has a diagonal of %.3g; both must show the "
-                  "same surface in the same coordinates",
-                  distance, diagonal);
+    std::snprintf(
+        text, sizeof text,
+        "image and mesh lie %.3g apart on the average, and the mesh has a diagonal of %.3g; both must show the "
+        "same surface in the same coordinates",
+        distance, diagonal);
     return Error{Stage::kFit, text};
 }
 

@@ -106,7 +106,8 @@ void place_samples(const std::vector<Vec3>& positions, RasterImage& image) {
         if (!image.defined[i]) continue;
         for (size_t k = 0; k < 3; ++k) {
             const double value = positions[i][static_cast<int>(k)];
-            image.values[i * image.channels + k] = is_whole(image.type) ? std::clamp(std::round(value), low, high) : value;
+            image.values[i * image.channels + k] =
+                is_whole(image.type) ? std::clamp(std::round(value), low, high) : value;
         }
     }
 }
@@ -114,8 +115,8 @@ void place_samples(const std::vector<Vec3>& positions, RasterImage& image) {
 }  // namespace
 
 Result<FittedRaster> fit_raster(const RasterImage& image, const RasterGluing& gluing,
-                                    const std::vector<Vec3>& positions, const Mesh& mesh, const FitOptions& options,
-                                    const Progress& progress) {
+                                const std::vector<Vec3>& positions, const Mesh& mesh, const FitOptions& options,
+                                const Progress& progress) {
     GeometryImage start = geometry_image(image, gluing, positions);
     GIM_TRY(quality, measure_start(start, mesh, options.threads));
     FitOptions now = options;

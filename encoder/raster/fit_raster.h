@@ -22,7 +22,7 @@ struct FittedRaster {
     FitQuality before, after;
 };
 Result<FittedRaster> fit_raster(const RasterImage& image, const RasterGluing& gluing,
-                                    const std::vector<Vec3>& positions, const Mesh& mesh, const FitOptions& options,
-                                    const Progress& progress = {});
+                                const std::vector<Vec3>& positions, const Mesh& mesh, const FitOptions& options,
+                                const Progress& progress = {});
 
 }  // namespace gim

@@ -78,9 +78,7 @@ class Zipper {
     enum class Role : uint8_t { kNone, kMoves, kStays };
 
     double length(uint32_t e) const { return (positions_[edges_[e][1]] - positions_[edges_[e][0]]).norm(); }
-    Vec3 along(uint32_t e, double t) const {
-        return (1 - t) * positions_[edges_[e][0]] + t * positions_[edges_[e][1]];
-    }
+    Vec3 along(uint32_t e, double t) const { return (1 - t) * positions_[edges_[e][0]] + t * positions_[edges_[e][1]]; }
     double cell_size() const {
         double sum = 0;
         for (uint32_t e = 0; e < edges_.size(); ++e) sum += length(e);

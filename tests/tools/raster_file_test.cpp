@@ -189,7 +189,8 @@ TEST(RasterFile, WhatCannotBeFittedIsRefusedWithTheReason) {
     EXPECT_NE(failure({input, out, "--refit", folder.file("nowhere.obj")}).find("nowhere.obj"), std::string::npos);
     EXPECT_NE(failure({input, out, "--refit", mesh}).find("same coordinates"), std::string::npos);
     EXPECT_NE(failure({mesh, out, "--refit", input}).find("this is an image"), std::string::npos);
-    EXPECT_NE(failure({mesh, out, "--refit", folder.file("mesh.obj")}).find("--refit fits an image"), std::string::npos);
+    EXPECT_NE(failure({mesh, out, "--refit", folder.file("mesh.obj")}).find("--refit fits an image"),
+              std::string::npos);
     EXPECT_NE(failure({input, folder.file("a.glb"), "--refit", mesh}).find("--refit belongs to"), std::string::npos);
     save(folder.file("empty.obj"), "");
     EXPECT_NE(failure({input, out, "--refit", folder.file("empty.obj")}), "");

@@ -175,8 +175,9 @@ TEST(RefitRaster, OpenBordersStayWhereTheyAreOnAClosedMesh) {
     for (size_t i = 0; i < image.defined.size(); ++i) {
         if (i % image.width / (kSide + 1) != 5) continue;
         const size_t row = i / image.width, column = i % image.width % (kSide + 1);
-        const double moved = std::hypot(values[3 * i] - image.values[3 * i], values[3 * i + 1] - image.values[3 * i + 1],
-                                        values[3 * i + 2] - image.values[3 * i + 2]);
+        const double moved =
+            std::hypot(values[3 * i] - image.values[3 * i], values[3 * i + 1] - image.values[3 * i + 1],
+                       values[3 * i + 2] - image.values[3 * i + 2]);
         const bool is_open = row == 0 || row == kSide - 1 || column == 0 || column == kSide - 1;
         (is_open ? farthest_open : farthest) = std::max(is_open ? farthest_open : farthest, moved);
     }
