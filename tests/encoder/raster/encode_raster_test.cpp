@@ -175,8 +175,9 @@ TEST(EncodeRaster, BordersWithinTheToleranceAreGluedAndStayExact) {
     expect_exact(image, options);
 }
 
-// Two pieces side by side, of 9 columns, with other numbers of rows. They share the border at x = 0, which bends.
-RasterImage two_spacings(uint32_t left_rows, uint32_t right_rows, double bend, double uneven) {
+// Two pieces side by side, of 9 columns, with other numbers of rows. They share the border at x = 0, which bends. The right
+// one may be turned by half a turn.
+RasterImage two_spacings(uint32_t left_rows, uint32_t right_rows, double bend, double uneven, bool is_turned = false) {
     RasterImage image;
     image.width = 19;
     image.height = std::max(left_rows, right_rows);
@@ -186,8 +187,8 @@ RasterImage two_spacings(uint32_t left_rows, uint32_t right_rows, double bend, d
         for (uint32_t c = 0; c < image.width; ++c) {
             const uint32_t rows = c < 9 ? left_rows : right_rows;
             const bool is_defined = c != 9 && r < rows;
-            const double x = c < 9 ? (double(c) - 8) / 8 : (double(c) - 10) / 8;
-            double y = double(r) / (rows - 1);
+            const double x = c < 9 ? (double(c) - 8) / 8 : is_turned ? (18 - double(c)) / 8 : (double(c) - 10) / 8;
+            double y = double(is_turned && c > 9 ? rows - 1 - r : r) / (rows - 1);
             if (c < 9) y += uneven * std::sin(6 * y) * y * (1 - y);
             image.defined.push_back(is_defined ? 1 : 0);
             for (const double v : {x, 10 * y, bend * std::sin(5 * y) + 0.2 * x * x})
@@ -221,6 +222,7 @@ TEST(EncodeRaster, BordersOfOtherSpacingAreZippered) {
         expect_one_piece(two_spacings(left, right, 0, 0), kExact);
         expect_one_piece(two_spacings(left, right, 0.4, 0), near);
         expect_one_piece(two_spacings(left, right, 0.4, 0.3), near);
+        expect_one_piece(two_spacings(left, right, 0.4, 0.3, true), near);
     }
     expect_one_piece(two_spacings(15, 15, 0.4, 0.3), near);
 }
