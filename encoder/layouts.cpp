@@ -66,6 +66,7 @@ double effective_samples_of_charts(const Mesh& mesh, const EncodeOptions& option
     quick.samples = options.samples;
     quick.seed = options.seed;
     quick.threads = options.threads;
+    quick.density = false;
     quick.fit = std::nullopt;
     const auto charts = make_multi_chart_image(mesh, quick, clock);
     if (!charts.ok()) return 0;

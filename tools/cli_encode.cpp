@@ -205,6 +205,16 @@ void add_file_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_option("OUT", a.command.output, ".gim file to write (-: standard output), or .glb")->required();
 }
 
+void add_refit_option(CLI::App* sub, EncodeArguments& a) {
+    sub->add_option(
+           "--refit", a.command.refit,
+           "Image: fit its samples to this mesh, which it must show in the same coordinates. --psnr and "
+           "--max-error then count against the mesh. With --lossless the samples are fitted first and then kept "
+           "exactly. --fit says how far samples move; auto: stiff if there are channels besides x y z. Default: "
+           "no sample moves")
+        ->type_name("MESH");
+}
+
 void add_glb_options(CLI::App* sub, EncodeArguments& a) {
     sub->add_flag("--fallback", a.command.fallback,
                   "GLB: also write plain arrays to OUT.fallback.bin, for readers that do not know the extension. Other "
@@ -312,7 +322,8 @@ Subcommand add_encode(CLI::App& app) {
         "size tells its side. gim imports it with the parametrization that it has.\n"
         "MESH may also be a multi-chart image of another program, as .npz or .exr: x y z of each sample, a mask, "
         "other\n"
-        "channels. Each sample stays where it is. With --lossless whole numbers are exact, and floats are rounded to\n"
+        "channels. Each sample stays where it is, unless --refit names the mesh. With --lossless whole numbers are "
+        "exact, and floats are rounded to\n"
         "--bits of the bounding box. Borders that coincide are glued. gim decode OUT.gim BACK.npz gives the image "
         "back.\n"
         "If OUT is a .glb and MESH is glTF, the scene stays: nodes, materials, animations, cameras, lights. Each mesh\n"
@@ -327,11 +338,13 @@ Subcommand add_encode(CLI::App& app) {
         "  gim encode bunny.ply bunny.gim --lossless --bits 16 --json report.json\n"
         "  gim encode bunny.ply bunny.gim --size 129 --normals 512\n"
         "  gim encode atlas.npz atlas.gim --lossless\n"
+        "  gim encode atlas.npz atlas.gim --refit bunny.ply --psnr 70\n"
         "  gim encode scene.glb small.glb --psnr 70\n"
         "  zcat bunny.ply.gz | gim encode - bunny.gim\n"
         "  gim batch meshes packed --psnr 70     all meshes of a folder");
     add_file_options(sub, a);
     add_all_options(sub, a, a.command.options.threads);
+    add_refit_option(sub, a);
     add_glb_options(sub, a);
     add_report_options(sub, a);
     return {sub, [arguments] { return run_encode(command_of(*arguments)); }};

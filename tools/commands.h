@@ -26,11 +26,15 @@ struct EncodeCommand {
     bool fallback = false;                       // GLB: also plain arrays, in a file of their own
     uint64_t max_memory = default_max_memory();  // for the mesh as read
     RasterOptions raster;                        // of an image
+    std::string refit;                           // mesh to fit the samples of an image to; empty: they stay
 };
 int run_encode(const EncodeCommand& command);
 // Encodes what was read, whatever kind it is.
 Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress = {},
                              const Observer& observer = {});
+// Encodes an image, with its samples fitted to the mesh.
+Result<Encoded> refit_input(const Input& input, const TriangleMesh& mesh, const EncodeOptions& options,
+                            const Progress& progress = {});
 // If OUT is a GLB.
 int run_encode_glb(const EncodeCommand& command);
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "gim/refit.h"
 #include "tools/commands.h"
 #include "tools/companions.h"
 #include "tools/file.h"
@@ -146,6 +147,7 @@ int write_results(const EncodeCommand& command, Encoded encoded) {
     if (stage(command.output, std::move(encoded.bytes)) != 0) return 1;
     if (!command.json.empty()) {
         nlohmann::ordered_json document = {{"input", command.input}, {"output", command.output}};
+        if (!command.refit.empty()) document["refit"] = command.refit;
         document.update(to_json(encoded.report));
         const std::string text = json_text(document);
         if (stage(command.json, {text.begin(), text.end()}) != 0) return 1;
@@ -158,7 +160,8 @@ int write_results(const EncodeCommand& command, Encoded encoded) {
 
 // Checks everything that can fail before minutes of work.
 std::optional<FileError> check_names(const EncodeCommand& command) {
-    const std::array<NamedFile, 3> files = {{{"MESH", command.input, Direction::kRead},
+    const std::array<NamedFile, 4> files = {{{"MESH", command.input, Direction::kRead},
+                                             {"--refit", command.refit, Direction::kRead},
                                              {"OUT", command.output, Direction::kWrite},
                                              {"--json", command.json, Direction::kWrite}}};
     if (auto failure = check_files(files)) return failure;
@@ -179,7 +182,40 @@ std::optional<FileError> check_names(const EncodeCommand& command) {
     return {};
 }
 
+Result<void> check_raster_layout(const EncodeOptions& options) {
+    if (options.layout == Layout::kMcgim || options.layout == Layout::kAuto) return {};
+    return Error{Stage::kInput, "an image of charts has the layout mcgim; leave --layout out, or say mcgim"};
+}
+
+// Reads the mesh of --refit, if there is one, and encodes.
+Result<Encoded> encode_by_command(const EncodeCommand& command, const Input& input, const Observer& observer) {
+    if (command.refit.empty()) {
+        ProgressPrinter printer(command.quiet);
+        return encode_input(input, command.options, printer.callback(), observer);
+    }
+    const Result<TriangleMesh> mesh =
+        read_surface_aloud(command.refit, 0, {.want = Want::kShape, .max_memory = command.max_memory});
+    if (!mesh.ok())
+        return Error{mesh.error().stage,
+                     "--refit " + shown_name(command.refit, Direction::kRead) + ": " + mesh.error().message};
+    ProgressPrinter printer(command.quiet);
+    return refit_input(input, mesh.value(), command.options, printer.callback());
+}
+
 }  // namespace
+
+Result<Encoded> refit_input(const Input& input, const TriangleMesh& mesh, const EncodeOptions& options,
+                            const Progress& progress) {
+    if (input.kind == Input::Kind::kRawImage) {
+        return refit_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), mesh,
+                           options, progress);
+    }
+    if (input.kind != Input::Kind::kRaster)
+        return Error{Stage::kInput,
+                     "--refit fits an image to a mesh (.npz, .exr, or a headerless .gim), and this is none"};
+    if (auto layout = check_raster_layout(options); !layout.ok()) return layout.error();
+    return refit_raster(input.raster, mesh, options, progress);
+}
 
 Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, const Progress& progress,
                              const Observer& observer) {
@@ -191,9 +227,7 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
             return encode_image(input.raw.channels, input.raw.side, kRawWeldTolerance * diagonal_of(input.raw), options,
                                 progress);
         case Input::Kind::kRaster:
-            if (options.layout != Layout::kMcgim && options.layout != Layout::kAuto)
-                return Error{Stage::kInput,
-                             "an image of charts has the layout mcgim; leave --layout out, or say mcgim"};
+            if (auto layout = check_raster_layout(options); !layout.ok()) return layout.error();
             return encode_raster(input.raster, options, progress);
         case Input::Kind::kMesh:
             break;
@@ -202,7 +236,11 @@ Result<Encoded> encode_input(const Input& input, const EncodeOptions& options, c
 }
 
 int run_encode(const EncodeCommand& command) {
-    if (extension_of(command.output) == "glb") return run_encode_glb(command);
+    if (extension_of(command.output) == "glb") {
+        if (command.refit.empty()) return run_encode_glb(command);
+        return report_error(shown_name(command.output, Direction::kWrite),
+                            {Stage::kWrite, "--refit belongs to an image, which becomes a .gim file"});
+    }
     if (command.fallback) {
         return report_error(shown_name(command.output, Direction::kWrite),
                             {Stage::kWrite, "--fallback belongs to a GLB; name OUT something.glb"});
@@ -221,11 +259,7 @@ int run_encode(const EncodeCommand& command) {
         const Result<void> made = pictures.make_folder();
         if (!made.ok()) return report_error(command.debug_folder, made.error());
     }
-    Result<Encoded> encoded = [&] {
-        ProgressPrinter printer(command.quiet);
-        return encode_input(input.value(), command.options, printer.callback(),
-                            draws ? pictures.observer() : Observer());
-    }();
+    Result<Encoded> encoded = encode_by_command(command, input.value(), draws ? pictures.observer() : Observer());
     if (draws) {  // of a failed run too: there they are needed most
         const Result<void> drawn = pictures.finish();
         if (!drawn.ok()) return report_error(command.debug_folder, drawn.error());

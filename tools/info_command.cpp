@@ -31,8 +31,10 @@ struct Description {
     uint64_t actual_size = 0;
     std::vector<Image> images;
     std::vector<gim_chunk> chunks;
-    std::string imported;               // the type of the array if the file holds an image of another program
-    uint32_t channels = 0;              // of that
+    bool is_raster = false;             // the file holds an image of another program: it has no paths
+    std::string imported;               // the type of its array
+    uint32_t channels = 0;              // of that, besides the mask
+    bool has_mask = false;              // not all samples are defined
     std::string text;                   // the file's note about itself; usually empty
     std::vector<std::string> problems;  // empty: the file is in order
 };
@@ -79,6 +81,7 @@ void add_raster(const Bytes& file, Description& d) {
     }
     d.imported = kTypes[static_cast<size_t>(image.value().type)];
     d.channels = image.value().channels;
+    d.has_mask = std::count(image.value().defined.begin(), image.value().defined.end(), 0) > 0;
 }
 
 void add_image(const Decoder& decoder, uint32_t index, Description& d) {
@@ -161,7 +164,8 @@ Result<Description> describe(const Bytes& file) {
         const Result<std::vector<DecodedImage>> decoded = decode_images(file, 0);
         if (!decoded.ok()) d.problems.push_back("decoding fails: " + decoded.error().message);
     }
-    if (d.problems.empty() && holds_raster(file)) add_raster(file, d);
+    d.is_raster = holds_raster(file);
+    if (d.problems.empty() && d.is_raster) add_raster(file, d);
     return d;
 }
 
@@ -224,8 +228,10 @@ void print_json(const std::string& path, const Description& d) {
                               {"bytes", plane.stream_size},
                               {"quantizer", plane.quantizer}});
         }
-        ordered_json entry = {
-            {"paths", image.paths}, {"seam_points", image.seam_points}, {"levels", levels}, {"planes", planes}};
+        ordered_json entry;
+        if (!d.is_raster) entry = {{"paths", image.paths}, {"seam_points", image.seam_points}};
+        entry["levels"] = levels;
+        entry["planes"] = planes;
         if (d.info.has_boxes != 0 && !image.levels.empty()) entry["box"] = to_json(image.levels[0].box);
         if (!image.clusters.empty()) entry["clusters"] = to_json(image.clusters);
         images.push_back(entry);
@@ -300,10 +306,12 @@ void print_text(const std::string& path, const Description& d) {
                 info.is_relative != 0 ? "binary64; decoded positions are relative to it" : "binary32");
     print_bounds(info);
     if (!d.imported.empty())
-        std::printf("  imported image: %s, %u channels and the mask\n", d.imported.c_str(), d.channels);
+        std::printf("  imported image: %s, %u channels%s\n", d.imported.c_str(), d.channels,
+                    d.has_mask ? " and a mask" : "");
     for (size_t i = 0; i < d.images.size(); ++i) {
         const Image& image = d.images[i];
-        std::printf("image %zu: %u %s", i, image.paths, paths_name(info.layout));
+        std::printf("image %zu", i);
+        if (!d.is_raster) std::printf(": %u %s", image.paths, paths_name(info.layout));
         if (image.seam_points > 0) std::printf(", %u surface points on the ring", image.seam_points);
         std::printf("\n  level         size   vertices  triangles   bytes needed  memory to decode\n");
         for (const DecoderLevel& level : image.levels) {

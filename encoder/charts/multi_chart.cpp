@@ -41,13 +41,6 @@ std::vector<PackShape> shapes_of(const Atlas& atlas) {
     return shapes;
 }
 
-// Returns a value to which the maps' stretch efficiency is inversely proportional.
-double total_cost(const std::vector<ChartMap>& maps) {
-    double energy = 0, area = 0;
-    for (const ChartMap& map : maps) energy += map.energy, area += map.area;
-    return energy * area;
-}
-
 // The mesh as charts, with all that splitting them needs.
 struct ChartedMesh {
     Mesh mesh;  // with short edges
@@ -55,8 +48,7 @@ struct ChartedMesh {
     AtlasOptions options;
     std::vector<double> importance;  // per face; empty: 1
     Atlas atlas;
-    TopologySummary summary;     // of the mesh
-    double even_efficiency = 0;  // of the first maps, whose samples are even
+    TopologySummary summary;  // of the mesh
 
     Result<void> split(const std::vector<uint32_t>& charts, const Progress& progress) {
         auto split = split_charts(mesh, topology, importance, options, charts, std::move(atlas), progress);
@@ -77,7 +69,6 @@ Result<ChartedMesh> cut_into_charts(const Mesh& mesh, const MultiChartOptions& o
     GIM_TRY(atlas, build_atlas(charted.mesh, charted.topology, {}, charted.options, clock.progress()));
     charted.atlas = std::move(atlas);
     charted.summary = analyse_topology(charted.mesh.triangles, charted.mesh.positions.size()).summary;
-    charted.even_efficiency = stretch_efficiency(charted.atlas.charts, charted.atlas.maps);
     return charted;
 }
 
@@ -148,7 +139,6 @@ Result<MultiChart> pack_and_zip(const MultiChartOptions& options, ChartedMesh ch
         }
         result.image = std::move(image.value());
         result.topology = charted.summary;
-        result.stretch_efficiency = charted.even_efficiency * total_cost(charted.atlas.maps) / total_cost(maps);
         result.packing_efficiency =
             static_cast<double>(result.image.mask.count()) / static_cast<double>(result.image.mask.defined.size());
         charted.atlas.maps = std::move(maps);
@@ -207,6 +197,7 @@ uint32_t automatic_charts(const Mesh& mesh, uint32_t samples) {
 
 Result<MultiChart> make_multi_chart_image(const Mesh& mesh, const MultiChartOptions& options, StageClock& clock) {
     GIM_TRY(result, options.even_axes ? charts_on_even_axes(mesh, options, clock) : charts_of(mesh, options, clock));
+    result.stretch_efficiency = stretch_efficiency(result.atlas.charts, result.atlas.maps);
     if (options.fit) {
         GIM_CHECK(fit_samples(mesh, options, result, clock));
     }

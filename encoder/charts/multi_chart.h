@@ -39,7 +39,7 @@ struct MultiChart {
     Atlas atlas;                // what the image was made from
     Packing packing;
     TopologySummary topology;                               // of the mesh
-    double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1; the former is for even samples
+    double stretch_efficiency = 0, packing_efficiency = 0;  // 0..1; the former of the maps that are sampled
     uint32_t packings = 1;                                  // packings made until the seams closed
     FitQuality before_fit, after_fit;                       // equal, and not measured, without a fit
 };

@@ -26,9 +26,10 @@ struct FitOptions {
     bool thorough = false;
     uint32_t rounds = 0;  // 0: as many as the strength needs; more come a little nearer to the optimum
     uint64_t seed = 1;
-    uint32_t threads = 0;         // 0: all cores; the result does not depend on it
-    Rails rails = {};             // that samples stay on
-    std::vector<bool> held = {};  // empty, or per sample: the sample does not move, and its faces are not compared
+    uint32_t threads = 0;          // 0: all cores; the result does not depend on it
+    Rails rails = {};              // that samples stay on
+    std::vector<bool> held = {};   // empty, or per sample: the sample does not move, and its faces are not compared
+    std::vector<bool> still = {};  // empty, or per sample, the same for all at one point: the sample does not move
 };
 
 // One-way RMS distances are in the unit of the mesh.

@@ -25,16 +25,6 @@ std::vector<Vec3> face_normals(const Mesh& mesh) {
     return normals;
 }
 
-// Returns the boundary edges of a mesh, as triangles without area.
-Mesh boundary_curve(const Mesh& mesh) {
-    Mesh curve{mesh.positions, {}};
-    const Topology topology = build_topology(mesh);
-    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
-        if (topology.twin[h] == kNone) curve.triangles.push_back({from(mesh, h), to(mesh, h), to(mesh, h)});
-    }
-    return curve;
-}
-
 // Counts the faces that look away from the reference at their centres.
 uint64_t count_folds(const ImageSurface& image, const FitReference& reference, const std::vector<bool>& held,
                      double front) {
@@ -52,6 +42,15 @@ uint64_t count_folds(const ImageSurface& image, const FitReference& reference, c
 }
 
 }  // namespace
+
+Mesh boundary_curve(const Mesh& mesh) {
+    Mesh curve{mesh.positions, {}};
+    const Topology topology = build_topology(mesh);
+    for (uint32_t h = 0; h < topology.twin.size(); ++h) {
+        if (topology.twin[h] == kNone) curve.triangles.push_back({from(mesh, h), to(mesh, h), to(mesh, h)});
+    }
+    return curve;
+}
 
 FitFrame::FitFrame(const Mesh& mesh) {
     Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
@@ -130,6 +129,7 @@ Fitter::Fitter(const std::vector<Vec3>& start, const FitReference& reference, co
         }
     }
     fixed_ = held_;
+    for (size_t v = 0; v < options.still.size(); ++v) fixed_[v] = fixed_[v] || options.still[v];
     has_curve_ = !reference_.curve.triangles.empty();
     for (uint32_t v = 0; v < x_.size(); ++v) {
         if (!gluing_.on_input_boundary[v]) continue;

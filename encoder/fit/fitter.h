@@ -38,6 +38,9 @@ struct FitFrame {
     Vec3 out_of(const Vec3& point) const { return point / scale + middle; }
 };
 
+// Returns the boundary edges of a mesh, as triangles without area.
+Mesh boundary_curve(const Mesh& mesh);
+
 // The reference, prepared once for all rounds.
 struct FitReference {
     Mesh mesh;

@@ -1,11 +1,9 @@
 #include "encoder/raster/glue_raster.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
-#include <unordered_map>
 
+#include "encoder/raster/cell_index.h"
 #include "format/chart_ramp.h"
 
 namespace gim {
@@ -13,47 +11,27 @@ namespace {
 
 constexpr int64_t kSideBySide = 1;  // samples
 
-using Cell = std::array<int64_t, 3>;
-struct CellHash {
-    size_t operator()(const Cell& c) const {
-        uint64_t hash = 0;
-        for (const int64_t k : c) hash = (hash ^ static_cast<uint64_t>(k)) * 0x9E3779B97F4A7C15u;
-        return static_cast<size_t>(hash ^ hash >> 32);
-    }
-};
-
 // The first samples of points, by where they are.
 class PointIndex {
   public:
     PointIndex(uint32_t width, const std::vector<Vec3>& positions, double tolerance)
-        : width_(width), positions_(positions), tolerance_(tolerance), size_(tolerance > 0 ? 2 * tolerance : 1) {}
+        : width_(width), positions_(positions), tolerance_(tolerance), cells_(tolerance > 0 ? 2 * tolerance : 1) {}
 
     // Returns the nearest one within the tolerance; kNone if there is none.
     uint32_t nearest(uint32_t sample) const {
-        const Cell center = cell_of(sample);
         uint32_t best = kNone;
         double least = INFINITY;
-        for (int64_t k = 0; k < 27; ++k) {
-            const auto at = cells_.find({center[0] + k % 3 - 1, center[1] + k / 3 % 3 - 1, center[2] + k / 9 - 1});
-            if (at == cells_.end()) continue;
-            for (const uint32_t other : at->second) {
-                const double distance = (positions_[other] - positions_[sample]).norm();
-                if (distance > tolerance_ || distance >= least || (distance > 0 && lie_side_by_side(sample, other)))
-                    continue;
-                best = other;
-                least = distance;
-            }
-        }
+        cells_.for_each_near(positions_[sample], [&](uint32_t other) {
+            const double distance = (positions_[other] - positions_[sample]).norm();
+            if (distance > tolerance_ || distance >= least || (distance > 0 && lie_side_by_side(sample, other))) return;
+            best = other;
+            least = distance;
+        });
         return best;
     }
-    void add(uint32_t sample) { cells_[cell_of(sample)].push_back(sample); }
+    void add(uint32_t sample) { cells_.add(positions_[sample], sample); }
 
   private:
-    Cell cell_of(uint32_t sample) const {
-        const Vec3 p = positions_[sample] / size_;
-        const auto number = [](double x) { return static_cast<int64_t>(std::clamp(std::floor(x), -0x1p60, 0x1p60)); };
-        return {number(p.x()), number(p.y()), number(p.z())};
-    }
     bool lie_side_by_side(uint32_t a, uint32_t b) const {
         return std::abs(int64_t{a / width_} - int64_t{b / width_}) <= kSideBySide &&
                std::abs(int64_t{a % width_} - int64_t{b % width_}) <= kSideBySide;
@@ -61,8 +39,8 @@ class PointIndex {
 
     uint32_t width_;
     const std::vector<Vec3>& positions_;
-    double tolerance_, size_;
-    std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells_;
+    double tolerance_;
+    CellIndex cells_;
 };
 
 void find_depths(const RasterImage& image, RasterGluing& g) {
@@ -85,23 +63,21 @@ uint32_t count_pieces(const RasterGluing& g, uint32_t width, uint32_t height) {
     std::vector<uint8_t> seen(g.depth.size(), 0);
     std::vector<uint32_t> queue;
     uint32_t pieces = 0;
+    const auto visit = [&](uint32_t i) {
+        if (seen[i] || g.depth[i] == kUndefined) return;
+        seen[i] = 1;
+        queue.push_back(i);
+    };
     for (uint32_t start = 0; start < seen.size(); ++start) {
-        if (seen[start] || g.depth[start] == kUndefined) continue;
-        ++pieces;
-        seen[start] = 1;
-        queue.assign(1, start);
+        visit(start);
+        pieces += queue.empty() ? 0 : 1;
         while (!queue.empty()) {
-            const uint32_t row = queue.back() / width, column = queue.back() % width;
+            const uint32_t i = queue.back(), row = i / width, column = i % width;
             queue.pop_back();
-            for (uint32_t r = row - 1; r != row + 2; ++r) {
-                for (uint32_t c = column - 1; c != column + 2; ++c) {
-                    if (r >= height || c >= width) continue;
-                    const uint32_t i = r * width + c;
-                    if (seen[i] || g.depth[i] == kUndefined) continue;
-                    seen[i] = 1;
-                    queue.push_back(i);
-                }
-            }
+            if (row > 0) visit(i - width);
+            if (row + 1 < height) visit(i + width);
+            if (column > 0) visit(i - 1);
+            if (column + 1 < width) visit(i + 1);
         }
     }
     return pieces;

@@ -10,11 +10,11 @@
 namespace gim {
 
 struct RasterGluing {
-    std::vector<uint8_t> depth;                  // per sample: kOnBorder, kInside, kUndefined (format/chart_ramp.h)
-    std::vector<uint32_t> origin;                // per sample: the first sample of its point
-    std::vector<uint32_t> point;                 // per sample: its point, numbered by first appearance
-    std::vector<uint8_t> is_shared;              // per sample: 1 if its point has others
-    uint32_t points = 0, pieces = 0;             // pieces: of the mask, connected by sides or corners
+    std::vector<uint8_t> depth;       // per sample: kOnBorder, kInside, kUndefined (format/chart_ramp.h)
+    std::vector<uint32_t> origin;     // per sample: the first sample of its point
+    std::vector<uint32_t> point;      // per sample: its point, numbered by first appearance
+    std::vector<uint8_t> is_shared;   // per sample: 1 if its point has others
+    uint32_t points = 0, pieces = 0;  // pieces: of the mask, connected by sides: no cell joins two at a corner
     uint64_t defined = 0, border = 0, open = 0;  // open: border samples that are alone
 };
 

@@ -20,7 +20,31 @@ struct Grid {
     uint32_t point(uint32_t row, uint32_t column) const { return gluing.point[index(row, column)]; }
 };
 
+CellKind cell_kind(const Grid& grid, uint32_t row, uint32_t column) {
+    const uint32_t i = grid.index(row, column);
+    const std::array<uint32_t, 4> corners = {i, i + 1, i + grid.width + 1, i + grid.width};
+    constexpr CellKind kWithout[] = {CellKind::kNoFirst, CellKind::kNoSecond, CellKind::kNoThird, CellKind::kNoFourth};
+    uint32_t count = 0;
+    CellKind without = CellKind::kEmpty;
+    for (size_t k = 0; k < 4; ++k) {
+        const bool is_defined = grid.gluing.depth[corners[k]] != kUndefined;
+        count += is_defined ? 1 : 0;
+        if (!is_defined) without = kWithout[k];
+    }
+    if (count == 4) return kind_of(chart_split(grid, row, column));
+    return count == 3 ? without : CellKind::kEmpty;
+}
+
 }  // namespace
+
+std::vector<CellKind> raster_cells(const RasterGluing& gluing, uint32_t width, uint32_t height) {
+    const Grid grid = {gluing, width};
+    std::vector<CellKind> kinds;
+    for (uint32_t row = 0; row + 1 < height; ++row) {
+        for (uint32_t column = 0; column + 1 < width; ++column) kinds.push_back(cell_kind(grid, row, column));
+    }
+    return kinds;
+}
 
 std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t width, uint32_t height,
                                        std::span<const float> units) {
@@ -36,21 +60,30 @@ std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t widt
     for (uint32_t row = 0; row + 1 < height; ++row) {
         for (uint32_t column = 0; column + 1 < width; ++column) {
             const uint32_t i = grid.index(row, column);
-            std::array<uint32_t, 4> defined{};
-            uint32_t count = 0;
-            for (const uint32_t corner : {i, i + 1, i + width + 1, i + width}) {
-                if (gluing.depth[corner] != kUndefined) defined[count++] = corner;
-            }
-            const auto [a, b, c, d] = defined;
-            if (count == 3) add(a, b, c);
-            if (count < 4) continue;
-            const Split split = chart_split(grid, row, column);
-            if (split == Split::kMain || (split == Split::kShorter && distance(a, c) <= distance(b, d))) {
-                add(a, b, c);
-                add(a, c, d);
-            } else {
-                add(a, b, d);
-                add(b, c, d);
+            const uint32_t a = i, b = i + 1, c = i + width + 1, d = i + width;
+            switch (const CellKind kind = cell_kind(grid, row, column)) {
+                case CellKind::kEmpty:
+                    break;
+                case CellKind::kNoFirst:
+                    add(b, c, d);
+                    break;
+                case CellKind::kNoSecond:
+                    add(a, c, d);
+                    break;
+                case CellKind::kNoThird:
+                    add(a, b, d);
+                    break;
+                case CellKind::kNoFourth:
+                    add(a, b, c);
+                    break;
+                default:
+                    if (kind == CellKind::kMain || (kind == CellKind::kShorter && distance(a, c) <= distance(b, d))) {
+                        add(a, b, c);
+                        add(a, c, d);
+                    } else {
+                        add(a, b, d);
+                        add(b, c, d);
+                    }
             }
         }
     }

@@ -5,10 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "encoder/image/gluing.h"
 #include "encoder/raster/glue_raster.h"
 #include "encoder/surface/mesh.h"
 
 namespace gim {
+
+// Which triangles each cell has, row by row.
+std::vector<CellKind> raster_cells(const RasterGluing& gluing, uint32_t width, uint32_t height);
 
 // units: three binary32 numbers per sample, of which the shorter diagonals follow. Triangles index samples.
 std::vector<Triangle> raster_triangles(const RasterGluing& gluing, uint32_t width, uint32_t height,

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """gim.encode_image and File.array: images of other programs, there and back."""
 
+import pathlib
+import tempfile
 import unittest
 
 from support import gim, needs_program, np, valid, PROGRAM
@@ -59,6 +61,23 @@ class EncodeImage(unittest.TestCase):
         array = array * np.uint16(20) + np.random.default_rng(1).integers(0, 9, array.shape, np.uint16)
         exact, coarse = gim.encode_image(array, mask, lossless=True, **FAST), gim.encode_image(array, mask, psnr=45, **FAST)
         self.assertLess(len(coarse), len(exact))
+
+    def test_samples_are_fitted_to_a_mesh(self):
+        row, column = np.meshgrid(np.arange(17.0), np.arange(17.0), indexing="ij")
+        coarse = np.stack([column, row, np.zeros_like(row)], -1).astype("float32")
+        flat = coarse.reshape(-1, 3) + np.float32([0, 0, 0.5])
+        faces = [(i, i + 1, i + 18, i + 17) for r in range(16) for i in range(17 * r, 17 * r + 16)]
+        back, _ = gim.open(gim.encode_image(coarse, refit=(flat, faces), lossless=True, bits=16, **FAST)).array()
+        np.testing.assert_allclose(back[..., 2], 0.5, atol=1e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            name = pathlib.Path(folder, "flat.obj")
+            name.write_text("".join("v %g %g %g\n" % tuple(p) for p in flat) +
+                            "".join("f %d %d %d %d\n" % tuple(i + 1 for i in f) for f in faces))
+            data = gim.encode_image(coarse, refit=name, lossless=True, bits=16, **FAST)
+            np.testing.assert_array_equal(gim.open(data).array()[0], back)
+        with self.assertRaises(gim.Error) as caught:
+            gim.encode_image(coarse, refit="nowhere.ply", lossless=True, **FAST)
+        self.assertIn("nowhere.ply", str(caught.exception))
 
     def test_what_is_no_image_is_refused(self):
         for array, mask in ((np.zeros((4, 4)), None), (np.zeros((8, 8, 3)), np.zeros((8, 8), bool)),

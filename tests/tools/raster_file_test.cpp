@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "tests/encoder/raster/made_rasters.h"
+#include "tests/tools/program.h"
 #include "tests/tools/test_files.h"
 #include "tools/commands.h"
 #include "tools/npy.h"
@@ -107,6 +109,91 @@ TEST(RasterFile, ExrComesBackWithItsNames) {
     }
     RasterImage plain = small_numbers(SampleType::kFloat32, 3);
     expect_equal(plain, through_gim(plain, RasterFormat::kExr, ".exr"));
+}
+
+std::string saved(const TemporaryFolder& folder, const RasterImage& image) {
+    const Result<Bytes> bytes = write_raster_file(image, RasterFormat::kNpz);
+    EXPECT_TRUE(bytes.ok());
+    save(folder.file("in.npz"), {reinterpret_cast<const char*>(bytes.value().data()), bytes.value().size()});
+    return folder.file("in.npz");
+}
+
+TEST(RasterFile, InfoSaysOnlyWhatSuchFilesHave) {
+    TemporaryFolder folder;
+    const std::string input = saved(folder, raster_of(18, 13, with_holes, 4)), file = folder.file("a.gim");
+    ASSERT_EQ(gim({"encode", input, file, "--lossless", "--quiet"}).status, 0);
+    const Outcome text = gim({"info", file});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_EQ(text.out.find("paths"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("imported image: uint16, 4 channels and a mask"), std::string::npos) << text.out;
+    const nlohmann::json image = nlohmann::json::parse(gim({"info", file, "--json"}).out)["images"][0];
+    EXPECT_FALSE(image.contains("paths"));
+    EXPECT_FALSE(image.contains("seam_points"));
+    EXPECT_EQ(image["levels"][0]["width"], 18);
+}
+
+TEST(RasterFile, SamplesAreFittedToAMesh) {
+    TemporaryFolder folder;
+    RasterImage flat = raster_of(12, 12, all_defined, 3);
+    flat.type = SampleType::kFloat32;
+    std::string obj;
+    for (uint32_t i = 0; i < 144; ++i) {
+        flat.values[3 * i] = i % 12;
+        flat.values[3 * i + 1] = i / 12;
+        flat.values[3 * i + 2] = 0.25;
+        obj += "v " + std::to_string(i % 12) + " " + std::to_string(i / 12) + " 1\n";
+    }
+    for (uint32_t i = 1; i < 132; ++i) {
+        if (i % 12 != 0)
+            obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 13) + " " +
+                   std::to_string(i + 12) + "\n";
+    }
+    save(folder.file("mesh.obj"), obj);
+    const std::string input = saved(folder, flat), file = folder.file("a.gim"), mesh = folder.file("mesh.obj");
+    const Outcome run = gim({"encode", input, file, "--refit", mesh, "--lossless", "--json", folder.file("r.json")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json report = nlohmann::json::parse(load_text(folder.file("r.json")));
+    EXPECT_EQ(report["refit"], mesh);
+    EXPECT_EQ(report["input_triangles"], 242);
+    EXPECT_LT(report["error"]["rms_to_reference"], 1e-3);  // corners may be cut
+    // Headerless squares are fitted too.
+    std::string raw;
+    for (size_t k = 0; k < 3; ++k) {
+        for (uint32_t row = 0; row < 9; ++row) {
+            for (uint32_t column = 0; column < 9; ++column) {
+                const float places[] = {1.375f * static_cast<float>(column), 1.375f * static_cast<float>(row), 0.25f};
+                const float value = places[k];
+                raw.append(reinterpret_cast<const char*>(&value), sizeof value);
+            }
+        }
+    }
+    save(folder.file("raw.gim"), raw);
+    for (const char* target : {"--lossless", "--psnr=50"}) {
+        const Outcome square = gim({"encode", folder.file("raw.gim"), file, "--refit", mesh, target, "--json", "-"});
+        ASSERT_EQ(square.status, 0) << square.err;
+        EXPECT_GT(nlohmann::json::parse(square.out)["error"]["psnr"], 50);
+    }
+}
+
+TEST(RasterFile, WhatCannotBeFittedIsRefusedWithTheReason) {
+    TemporaryFolder folder;
+    const std::string input = saved(folder, raster_of(12, 12, all_defined, 3));
+    const auto failure = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "encode");
+        const Outcome run = gim(std::move(arguments));
+        EXPECT_EQ(run.status, 1);
+        return run.err;
+    };
+    const std::string out = folder.file("a.gim"), mesh = folder.file("mesh.obj");
+    save(mesh, obj_text(corpus::sphere(3)));
+    EXPECT_NE(failure({input, out, "--refit", folder.file("nowhere.obj")}).find("nowhere.obj"), std::string::npos);
+    EXPECT_NE(failure({input, out, "--refit", mesh}).find("same coordinates"), std::string::npos);
+    EXPECT_NE(failure({mesh, out, "--refit", input}).find("this is an image"), std::string::npos);
+    EXPECT_NE(failure({mesh, out, "--refit", folder.file("mesh.obj")}).find("--refit fits an image"),
+              std::string::npos);
+    EXPECT_NE(failure({input, folder.file("a.glb"), "--refit", mesh}).find("--refit belongs to"), std::string::npos);
+    save(folder.file("empty.obj"), "");
+    EXPECT_NE(failure({input, out, "--refit", folder.file("empty.obj")}), "");
 }
 
 TEST(RasterFile, AnotherMaskChannelCanBeNamed) {

@@ -27,6 +27,7 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 import threading
 import warnings
 from concurrent.futures import ThreadPoolExecutor
@@ -824,13 +825,15 @@ def encode(vertices, faces, *, vertex_normals=None, vertex_colors=None, program=
     return _run_encode("ply", _ply(vertices, faces, vertex_normals, vertex_colors), program, timeout, options)
 
 
-def encode_image(array, mask=None, *, program=None, timeout=None, **options):
+def encode_image(array, mask=None, *, refit=None, program=None, timeout=None, **options):
     """Encodes a multi-chart image that another program made, sample by sample: the bytes of a .gim file.
 
     array    height x width x channels, or channels first: x, y, z, then perhaps a mask, and others; float16, float32,
              float64, and whole numbers of 8, 16 and 32 bits
     mask     height x width; not 0 where a sample is defined. None: where the array is NaN, a sample is undefined; without
              NaN, channel 3 is the mask if there is one
+    refit    the mesh that the image shows: the name of a file, or (vertices, faces). Samples are fitted to it, and psnr and
+             max_error count against it. None: samples stay where they are
     options  those of `gim encode --help` that images have, as for gim.encode: lossless=True, bits=16, psnr=70, bytes=4000,
              mask_channel=4 or "none", channels="first"
 
@@ -839,7 +842,15 @@ def encode_image(array, mask=None, *, program=None, timeout=None, **options):
     if mask is not None:
         arrays["mask"] = np.asarray(mask)
     np.savez(file, **arrays)
-    return _run_encode("npz", file.getvalue(), program, timeout, options)
+    if refit is None:
+        return _run_encode("npz", file.getvalue(), program, timeout, options)
+    if isinstance(refit, (str, os.PathLike)):
+        return _run_encode("npz", file.getvalue(), program, timeout, {**options, "refit": os.fspath(refit)})
+    with tempfile.TemporaryDirectory() as folder:
+        name = os.path.join(folder, "refit.ply")
+        with io.open(name, "wb") as out:
+            out.write(_ply(*refit, None, None))
+        return _run_encode("npz", file.getvalue(), program, timeout, {**options, "refit": name})
 
 
 def _run_encode(kind, data, program, timeout, options):

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+
 #include "encoder/surface/compare_meshes.h"
 #include "encoder/surface/topology_summary.h"
 #include "tests/encoder/stage_meshes.h"
@@ -89,6 +91,47 @@ TEST(MultiChart, EvenAxesMakeChartsOfALongTube) {
     const auto compared = ReferenceSurface(mesh).compare(surface_of(made.value().image).mesh, {.samples = 20000});
     ASSERT_TRUE(compared.ok());
     EXPECT_GT(compared.value().psnr, 50);
+}
+
+// Sander et al. 2001, section 3, by singular values: the least possible mean square of them over the mean square.
+double measured_efficiency(const MultiChart& made) {
+    double squared = 0, surface = 0, domain = 0;
+    for (size_t c = 0; c < made.atlas.charts.size(); ++c) {
+        const Mesh& mesh = made.atlas.charts[c].mesh;
+        const std::vector<Vec2>& uv = made.atlas.maps[c].uv;
+        for (const Triangle& t : mesh.triangles) {
+            Eigen::Matrix2d flat;
+            flat << uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]];
+            Eigen::Matrix<double, 3, 2> edges;
+            edges << mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]];
+            const double area = 0.5 * edges.col(0).cross(edges.col(1)).norm();
+            if (area == 0) continue;
+            squared += area * (edges * flat.inverse()).squaredNorm() / 2;
+            surface += area;
+            domain += flat.determinant() / 2;
+        }
+    }
+    return surface * surface / (domain * squared);
+}
+
+TEST(MultiChart, StretchEfficiencyIsThatOfTheMapsThatAreSampled) {
+    const Mesh mesh = surface_named("limbs");
+    for (const bool has_density : {false, true}) {
+        for (const bool even_axes : {false, true}) {
+            StageClock clock({});
+            MultiChartOptions options;
+            options.samples = 15000;
+            options.pack_effort = 2;
+            options.density = has_density;
+            options.even_axes = even_axes;
+            options.fit = {};
+            const auto made = make_multi_chart_image(mesh, options, clock);
+            ASSERT_TRUE(made.ok()) << made.error().message;
+            EXPECT_NEAR(made.value().stretch_efficiency, measured_efficiency(made.value()), 1e-6);
+            EXPECT_LE(made.value().stretch_efficiency, 1);
+            EXPECT_GT(made.value().stretch_efficiency, has_density || even_axes ? 0.3 : 0.85);
+        }
+    }
 }
 
 TEST(MultiChart, FewSamplesDoNotBreakTheSurface) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "gim/decoder.hpp"
 #include "tests/encoder/raster/made_rasters.h"
@@ -150,6 +151,19 @@ TEST(EncodeRaster, BordersThatCoincideAreGlued) {
     EXPECT_TRUE(coarse.manifold);
 }
 
+// Each chart is a component of the decoded surface, where no borders coincide.
+TEST(EncodeRaster, PiecesThatTouchAtCornersAreCharts) {
+    const auto charts = [](MaskRule mask) {
+        const Encoded file = encoded(raster_of(24, 16, mask, 3));
+        EXPECT_EQ(file.report.charts, topology_of(file.bytes).components);
+        return file.report.charts;
+    };
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return (r < 8) == (c < 12); }), 2u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return r / 4 % 2 == c / 4 % 2; }), 12u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return r + 3 < c || r > c; }), 2u);
+    EXPECT_EQ(charts([](uint32_t r, uint32_t c) { return (r < 9 && c < 13) || (r > 7 && c > 11); }), 1u);
+}
+
 TEST(EncodeRaster, BordersWithinTheToleranceAreGluedAndStayExact) {
     const RasterImage image = folded_raster(24, 10, 2);
     EXPECT_EQ(encoded(image).report.open_samples, 4u * 8 + 4 * 12);
@@ -159,6 +173,67 @@ TEST(EncodeRaster, BordersWithinTheToleranceAreGluedAndStayExact) {
     EXPECT_EQ(file.report.open_samples, 4u * 8);
     EXPECT_EQ(topology_of(file.bytes).boundary_loops, 2u);
     expect_exact(image, options);
+}
+
+// Two pieces side by side, of 9 columns, with other numbers of rows. They share the border at x = 0, which bends. The right
+// one may be turned by half a turn.
+RasterImage two_spacings(uint32_t left_rows, uint32_t right_rows, double bend, double uneven, bool is_turned = false) {
+    RasterImage image;
+    image.width = 19;
+    image.height = std::max(left_rows, right_rows);
+    image.type = SampleType::kFloat64;
+    image.mask = RasterImage::Mask::kArray;
+    for (uint32_t r = 0; r < image.height; ++r) {
+        for (uint32_t c = 0; c < image.width; ++c) {
+            const uint32_t rows = c < 9 ? left_rows : right_rows;
+            const bool is_defined = c != 9 && r < rows;
+            const double x = c < 9 ? (double(c) - 8) / 8 : is_turned ? (18 - double(c)) / 8 : (double(c) - 10) / 8;
+            double y = double(is_turned && c > 9 ? rows - 1 - r : r) / (rows - 1);
+            if (c < 9) y += uneven * std::sin(6 * y) * y * (1 - y);
+            image.defined.push_back(is_defined ? 1 : 0);
+            for (const double v : {x, 10 * y, bend * std::sin(5 * y) + 0.2 * x * x})
+                image.values.push_back(is_defined ? v : 0);
+        }
+    }
+    return image;
+}
+
+TEST(EncodeRaster, BordersOfOtherSpacingAreZippered) {
+    const auto expect_one_piece = [](const RasterImage& image, const EncodeOptions& options) {
+        const Encoded file = encoded(image, options);
+        const TopologySummary topology = topology_of(file.bytes);
+        EXPECT_TRUE(topology.manifold);
+        EXPECT_EQ(topology.components, 1u);
+        EXPECT_EQ(topology.boundary_loops, 1u);
+        EXPECT_EQ(file.report.charts, 2u);
+        const uint64_t rim = file.report.border_samples - 2 * 9 - 2 * 9;  // without the short sides
+        EXPECT_LE(file.report.open_samples, rim / 2 + 4 * 8);
+        EncodeOptions apart = options;
+        apart.weld_tolerance = Length{0, false};
+        const Encoded open = encoded(image, apart);
+        EXPECT_EQ(decoded(file.bytes).values, decoded(open.bytes).values);
+        EXPECT_GT(topology_of(open.bytes).components, 1u);
+    };
+    EncodeOptions near = kExact;
+    near.weld_tolerance = Length{0.05, false};
+    near.bits = 18;
+    for (const auto& [left, right] : {std::pair{13u, 25u}, {25u, 13u}, {13u, 19u}, {19u, 14u}, {12u, 40u}}) {
+        SCOPED_TRACE(std::to_string(left) + " and " + std::to_string(right));
+        expect_one_piece(two_spacings(left, right, 0, 0), kExact);
+        expect_one_piece(two_spacings(left, right, 0.4, 0), near);
+        expect_one_piece(two_spacings(left, right, 0.4, 0.3), near);
+        expect_one_piece(two_spacings(left, right, 0.4, 0.3, true), near);
+    }
+    expect_one_piece(two_spacings(15, 15, 0.4, 0.3), near);
+}
+
+TEST(EncodeRaster, BordersThatOnlyComeNearStayOpen) {
+    RasterImage image = two_spacings(13, 19, 0, 0);
+    for (size_t i = 0; i < image.defined.size(); ++i)
+        if (i % image.width > 9) image.values[3 * i] += 0.06;
+    EncodeOptions options = kExact;
+    options.weld_tolerance = Length{0.05, false};
+    EXPECT_EQ(topology_of(encoded(image, options).bytes).components, 2u);
 }
 
 TEST(EncodeRaster, GluedBordersAreNearlyFree) {
