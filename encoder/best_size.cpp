@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "encoder/code/rate_target.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 
 namespace gim {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "format/chart_table.h"
 #include "format/quad_complex.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "encoder/code/rate_target.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/layout/encode_once.h"
 #include "encoder/layouts.h"
 

@@ -11,7 +11,7 @@
 #include "encoder/charts/close_chart_seams.h"
 #include "encoder/charts/write_charts.h"
 #include "encoder/code/file_units.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/fit/fit_coded.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/fit/parts_codec.h"

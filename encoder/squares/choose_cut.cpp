@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "encoder/code/rate_target.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/squares/coding_trial.h"
 
 namespace gim {

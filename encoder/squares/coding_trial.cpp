@@ -6,7 +6,7 @@
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/file_units.h"
 #include "encoder/code/rate_target.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/squares/square_codec.h"
 #include "encoder/squares/write_squares.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/squares/square_fit.h"
 #include "encoder/squares/square_texels.h"

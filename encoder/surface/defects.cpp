@@ -23,6 +23,14 @@ Vec3 face_normal(const Mesh& mesh, const Triangle& t) {
     return length > 0 ? Vec3(area / length) : Vec3::Zero();
 }
 
+std::vector<Vec3> face_normals(const Mesh& mesh) {
+    std::vector<Vec3> normals(mesh.triangles.size());
+    parallel_blocks(normals.size(), 16384, 0, [&](size_t, size_t begin, size_t end) {
+        for (size_t f = begin; f < end; ++f) normals[f] = face_normal(mesh, mesh.triangles[f]);
+    });
+    return normals;
+}
+
 // Angles, in degrees, between the shading normals of samples and of their closest points.
 std::vector<double> normal_angles(const Mesh& from, const std::vector<Vec3>& from_normals, const Mesh& to,
                                   const std::vector<Vec3>& to_normals, const PairedSamples& pairs, uint32_t threads) {
@@ -77,16 +85,15 @@ std::vector<std::array<uint32_t, 2>> find_folded_back_edges(const Mesh& mesh) {
     for (Triangle& t : joined) {
         for (uint32_t& v : t) v = first[v];
     }
+    const std::vector<Vec3> normals = face_normals(mesh);
     const EdgeTable table = build_edge_table(joined, mesh.positions.size());
     std::vector<std::array<uint32_t, 2>> edges;
     for (size_t e = 0; e < table.size(); ++e) {
         const auto around = table.around(e);
         if (around.size() != 2) continue;
         const uint32_t h = around[0];
-        const Vec3 a = face_normal(mesh, mesh.triangles[face_of(h)]);
-        const Vec3 b = face_normal(mesh, mesh.triangles[face_of(around[1])]);
         const auto [from, to] = std::minmax(joined[face_of(h)][h % 3], joined[face_of(h)][next(h) % 3]);
-        if (a.dot(b) < kFoldedBack) edges.push_back({from, to});
+        if (normals[face_of(h)].dot(normals[face_of(around[1])]) < kFoldedBack) edges.push_back({from, to});
     }
     return edges;
 }

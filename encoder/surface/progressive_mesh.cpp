@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <queue>
 
+#include "encoder/base/parallel.h"
 #include "encoder/surface/quadric.h"
 
 namespace gim {
@@ -151,7 +152,7 @@ class Simplifier {
 
   private:
     void run_phase() {
-        for (uint32_t v = 0; v < positions_.size(); ++v) push(v);
+        fill_queue();
         while (mesh_.vertex_count() > options_.target_vertices && !queue_.empty()) {
             const Entry entry = queue_.top();
             queue_.pop();
@@ -231,6 +232,19 @@ class Simplifier {
     void enqueue(uint32_t v, const Candidate& candidate) {
         queue_.push({candidate.cost, v, ++version_[v]});
         queued_[v] = 1;
+    }
+    void fill_queue() {
+        std::vector<Candidate> candidates(positions_.size());
+        parallel_blocks(candidates.size(), 4096, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t v = begin; v < end; ++v) candidates[v] = best(static_cast<uint32_t>(v));
+        });
+        std::vector<Entry> entries;
+        for (uint32_t v = 0; v < candidates.size(); ++v) {
+            if (candidates[v].edge == kNone) continue;
+            entries.push_back({candidates[v].cost, v, ++version_[v]});
+            queued_[v] = 1;
+        }
+        queue_ = std::priority_queue<Entry>({}, std::move(entries));
     }
     void push(uint32_t v) {
         const Candidate candidate = best(v);

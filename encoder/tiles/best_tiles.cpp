@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "format/quad_complex.h"
 #include "format/tile_atlas.h"
 

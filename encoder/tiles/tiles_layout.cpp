@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "encoder/code/file_units.h"
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 #include "encoder/fit/fit_coded.h"
 #include "encoder/fit/fit_strength.h"
 #include "encoder/tiles/sample_tiles.h"

@@ -1,5 +1,5 @@
 // EncodeOptions::effort: how long files are worked on.
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "encoder/effort.h"
+#include "encoder/fit/effort.h"
 
 #include <algorithm>
 #include <array>
