@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/base/at_once.h"
 #include "encoder/code/file_units.h"
 #include "encoder/fit/effort.h"
 #include "encoder/fit/fit_strength.h"
@@ -46,8 +47,13 @@ class SquaresLayout final : public LayoutImages {
         if (!units_) units_ = units_of(squares_.images, parameters.bits);
         Units units = *units_;
         units.quantizer = quantizer_in_range(parameters.quantizer);
-        for (size_t i = 0; i < fits_.size(); ++i)
-            squares_.images[i].positions = fits_[i].run(units, effort, clock.progress());
+        const auto run = [&](size_t i, const Progress& progress) {
+            squares_.images[i].positions = fits_[i].run(units, effort, progress);
+        };
+        if (fits_.size() == 1)
+            run(0, clock.progress());
+        else
+            for_each_at_once(fits_.size(), clock, [&](size_t i) { run(i, {}); });
         clock.begin(Stage::kCode);
     }
 

@@ -170,25 +170,25 @@ Components connected_components(std::span<const Triangle> triangles, size_t vert
     return number_components(build_edge_table(triangles, vertex_count), triangles.size());
 }
 
-Mesh extract_component(const Mesh& mesh, const Components& components, uint32_t component) {
-    constexpr uint32_t kUnused = kNone;
-    std::vector<uint32_t> new_index(mesh.positions.size(), kUnused);
-    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
-        if (components.of_face[f] != component) continue;
-        for (const uint32_t v : mesh.triangles[f]) new_index[v] = 0;
+std::vector<Mesh> split_components(const Mesh& mesh, const Components& components) {
+    std::vector<Mesh> pieces(components.count);
+    for (size_t f = 0; f < mesh.triangles.size(); ++f)
+        pieces[components.of_face[f]].triangles.push_back(mesh.triangles[f]);
+    std::vector<uint32_t> new_index(mesh.positions.size());
+    for (Mesh& piece : pieces) {
+        std::vector<uint32_t> vertices;
+        for (const Triangle& t : piece.triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+        std::sort(vertices.begin(), vertices.end());
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        for (const uint32_t v : vertices) {
+            new_index[v] = static_cast<uint32_t>(piece.positions.size());
+            piece.positions.push_back(mesh.positions[v]);
+        }
+        for (Triangle& t : piece.triangles) {
+            for (uint32_t& v : t) v = new_index[v];
+        }
     }
-    Mesh piece;
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-        if (new_index[v] == kUnused) continue;
-        new_index[v] = static_cast<uint32_t>(piece.positions.size());
-        piece.positions.push_back(mesh.positions[v]);
-    }
-    for (size_t f = 0; f < mesh.triangles.size(); ++f) {
-        if (components.of_face[f] != component) continue;
-        const Triangle& t = mesh.triangles[f];
-        piece.triangles.push_back({new_index[t[0]], new_index[t[1]], new_index[t[2]]});
-    }
-    return piece;
+    return pieces;
 }
 
 }  // namespace gim

@@ -42,7 +42,7 @@ struct Components {
 };
 Components connected_components(std::span<const Triangle> triangles, size_t vertex_count);
 
-// Returns one component as a mesh of its own. Vertices and faces keep their order.
-Mesh extract_component(const Mesh& mesh, const Components& components, uint32_t component);
+// Returns each component as a mesh of its own. Vertices and faces keep their order. O(F log F).
+std::vector<Mesh> split_components(const Mesh& mesh, const Components& components);
 
 }  // namespace gim

@@ -192,9 +192,8 @@ TEST(Repair, SheetsThatCrossContinueStraight) {
         EXPECT_EQ(made.report.repairs.cut_edges, 0u);
         // Each component is flat.
         const Components components = connected_components(made.mesh.triangles, made.mesh.positions.size());
-        for (uint32_t k = 0; k < 2; ++k) {
+        for (const Mesh& part : split_components(made.mesh, components)) {
             Eigen::AlignedBox3d extent;
-            const Mesh part = extract_component(made.mesh, components, k);
             for (const Vec3& p : part.positions) extent.extend(p);
             EXPECT_LT(extent.sizes().minCoeff(), 1e-9);
         }

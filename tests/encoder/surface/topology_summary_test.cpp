@@ -54,7 +54,7 @@ TEST(SummarizeTopology, MissingVerticesAreNotAManifold) {
     EXPECT_FALSE(summarize_topology(TriangleMesh{}).watertight);
 }
 
-TEST(Components, ExtractingThemAllGivesTheWholeMesh) {
+TEST(Components, TogetherTheyAreTheWholeMesh) {
     const TriangleMesh input = corpus::corpus().named("four-pieces").mesh();
     Mesh mesh;
     for (const auto& p : input.positions) mesh.positions.emplace_back(p[0], p[1], p[2]);
@@ -62,8 +62,7 @@ TEST(Components, ExtractingThemAllGivesTheWholeMesh) {
     const Components components = connected_components(mesh.triangles, mesh.positions.size());
     ASSERT_EQ(components.count, 4u);
     size_t faces = 0, vertices = 0;
-    for (uint32_t k = 0; k < components.count; ++k) {
-        const Mesh piece = extract_component(mesh, components, k);
+    for (const Mesh& piece : split_components(mesh, components)) {
         EXPECT_EQ(connected_components(piece.triangles, piece.positions.size()).count, 1u);
         faces += piece.triangles.size();
         vertices += piece.positions.size();
