@@ -77,6 +77,10 @@ Result<ChartLevels> charts_within(const Mesh& mesh, const MultiChartOptions& cha
                              kMostLevels, chart_options.threads);
 }
 
+// Denser surfaces make charts slow and their borders ragged. 0.25 takes 10 % more bytes on a horse of 70 dB, 0.55 about the
+// same.
+constexpr double kVerticesPerSample = 0.4;
+
 bool lacks_samples(const Result<ChartLevels>& charts) { return !charts.ok() && charts.error().stage == Stage::kSample; }
 
 }  // namespace
@@ -84,7 +88,7 @@ bool lacks_samples(const Result<ChartLevels>& charts) { return !charts.ok() && c
 Result<ChartLevels> make_charts(const Mesh& whole, const EncodeOptions& asked, uint32_t most_samples, StageClock& clock,
                                 const Observer& observer, EncodeReport& report) {
     MultiChartOptions options = chart_options_of(asked);
-    const Mesh mesh = is_fitted_to_codec(asked) ? coarsened_for(whole, options.samples) : whole;
+    const Mesh mesh = is_fitted_to_codec(asked) ? coarsened_to(whole, kVerticesPerSample * options.samples) : whole;
     for (int doublings = 0;; ++doublings, options.samples *= 2) {
         options.even_axes = false;
         auto charts = charts_within(mesh, options, clock, observer, report);

@@ -14,10 +14,10 @@ constexpr std::array<Effort, kMostEffort> kEfforts = {{
     {{1, 4, 2, 40}, 2, false, false, false},
     {{2, 6, 3, 40}, 3, true, false, true},
     {{4, 6, 3, 40}, 6, true, true, true},
+    {{5, 6, 3, 40}, 6, true, true, true},
     {{6, 6, 3, 40}, 6, true, true, true},
+    {{7, 6, 3, 40}, 6, true, true, true},
     {{8, 6, 3, 40}, 6, true, true, true},
-    {{12, 8, 3, 40}, 6, true, true, true},
-    {{20, 8, 3, 60}, 6, true, true, true},
 }};
 static_assert(EncodeOptions{}.effort == 5);
 

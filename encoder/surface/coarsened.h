@@ -8,8 +8,8 @@
 
 namespace gim {
 
-// mesh: an oriented 2-manifold. Returns it with about 0.4 vertices a sample by half-edge collapses (progressive_mesh.h), or as it
-// is if it has no more. Keeps its topology and its boundary vertices. Cost: O(V log V).
-Mesh coarsened_for(const Mesh& mesh, double samples);
+// mesh: an oriented 2-manifold. Returns it with about that many vertices by half-edge collapses (progressive_mesh.h), or as it is if
+// it has no more. Keeps its topology and its boundary vertices. Cost: O(V log V).
+Mesh coarsened_to(const Mesh& mesh, double vertices);
 
 }  // namespace gim
