@@ -24,16 +24,13 @@ namespace gim {
 namespace {
 
 // Faces larger than this part of the surface are split before cutting. It is about 8 samples of the image, within
-// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth. The least squares have no
-// use for more than two faces a sample.
-double largest_face(uint32_t side) {
-    const double samples = double(side) * side;
-    return std::max(std::clamp(8 / samples, 1.0 / 8000, 1.0 / 1000), 0.5 / samples);
-}
+// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
+double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
 
 // Denser surfaces are coarsened before they are cut. With 0.4, cut and map take less time still, but long limbs fold more. With 1,
 // files of small squares overshoot the PSNR that is asked for.
 constexpr double kVerticesPerSample = 3;
+constexpr double kFewVertices = 50000;  // cost little
 
 std::string percent(double part) {
     char text[32];
@@ -64,7 +61,7 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 }  // namespace
 
 CuttableSurface make_cuttable(const Mesh& mesh, const EncodeOptions& options) {
-    const double most = kVerticesPerSample * options.side * options.side;
+    const double most = std::max(kFewVertices, kVerticesPerSample * options.side * options.side);
     const Mesh coarsened = is_fitted_to_codec(options) ? coarsened_to(mesh, most) : mesh;
     Mesh fine = refine_large_faces(coarsened, largest_face(options.side) * surface_area(coarsened));
     Topology topology = build_topology(fine);
