@@ -1,7 +1,6 @@
 // gim_dense IN PARTS OUT.ply: cuts each triangle of a mesh into PARTS * PARTS, rounds them, adds noise, and writes binary
 // PLY. Makes scans of a million faces, and of ten, for measurements.
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 
 #include "corpus/generators.h"
 #include "tools/file.h"
+#include "tools/little_endian.h"
 #include "tools/mesh_read.h"
 
 namespace gim {
@@ -18,13 +18,6 @@ namespace gim {
 namespace {
 
 constexpr uint32_t kMostParts = 100;
-
-template <class T>
-void append(Bytes& bytes, const T& value) {
-    static_assert(std::endian::native == std::endian::little);
-    const auto* begin = reinterpret_cast<const uint8_t*>(&value);
-    bytes.insert(bytes.end(), begin, begin + sizeof value);
-}
 
 Bytes binary_ply(const TriangleMesh& mesh) {
     const std::string header =

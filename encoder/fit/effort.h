@@ -14,7 +14,7 @@ inline constexpr uint32_t kLeastEffort = 1, kMostEffort = 9;
 struct Effort {
     FitRounds rounds;
     size_t cuts;      // squares: among how many cuts a search chooses
-    bool all_sides;   // squares: a search that may take a smaller side also tries the whole one
+    bool all_sides;   // squares, charts: a search that may take fewer samples than asked for also tries all of them
     bool all_counts;  // tiles: a search tries other numbers of tiles than the usual one
     bool races;       // Layout::kAuto: tiles race against squares
 };

@@ -1,13 +1,12 @@
 #include "encoder/squares/choose_cut.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "encoder/base/at_once.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/fit/effort.h"
 #include "encoder/squares/coding_trial.h"
@@ -26,18 +25,14 @@ struct Candidate {
     double log_bytes = std::numeric_limits<double>::infinity();
 };
 
-template <class T, class Body>
-void for_each_at_once(std::vector<T>& all, const Body& body) {
-    tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { body(all[i]); });
-}
-
 // Cuts the surface by every preference and returns the cuts that differ.
-std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options) {
+std::vector<Candidate> cut_in_several_ways(const Mesh& mesh, const EncodeOptions& options, const StageClock& clock) {
     const CuttableSurface surface = make_cuttable(mesh, options);
     std::vector<Candidate> attempts;
     for (const CutPreference& preference : std::span(kPreferences).first(effort_of(options).cuts))
         attempts.push_back({preference, {}, {}});
-    for_each_at_once(attempts, [&](Candidate& attempt) {
+    for_each_at_once(attempts.size(), clock, [&](size_t i) {
+        Candidate& attempt = attempts[i];
         auto cut = cut_open(surface, options, attempt.preference);
         if (cut.ok()) attempt.cut = std::move(cut.value());
     });
@@ -63,10 +58,11 @@ bool may_choose_cut(const EncodeOptions& options) {
 
 std::optional<ChosenCut> choose_cut(const Mesh& mesh, const EncodeOptions& options, StageClock& clock) {
     clock.begin(Stage::kCut);
-    std::vector<Candidate> candidates = cut_in_several_ways(mesh, options);
+    std::vector<Candidate> candidates = cut_in_several_ways(mesh, options, clock);
 
     clock.begin(Stage::kParametrize);
-    for_each_at_once(candidates, [&](Candidate& candidate) {
+    for_each_at_once(candidates.size(), clock, [&](size_t i) {
+        Candidate& candidate = candidates[i];
         StageClock unheard({});
         auto square = map_and_sample(*candidate.cut, mesh, options, unheard);
         if (square.ok()) candidate.square = std::move(square.value());
@@ -77,7 +73,8 @@ std::optional<ChosenCut> choose_cut(const Mesh& mesh, const EncodeOptions& optio
     if (candidates.size() > 1) {
         clock.begin(Stage::kFit);
         const CodingTrial trial(mesh, options, candidates[0].square->image);
-        for_each_at_once(candidates, [&](Candidate& candidate) {
+        for_each_at_once(candidates.size(), clock, [&](size_t i) {
+            Candidate& candidate = candidates[i];
             const auto log_bytes = trial.log_bytes(candidate.square->image);
             if (log_bytes.ok()) candidate.log_bytes = log_bytes.value();
         });

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "encoder/base/result.h"
 #include "encoder/fit/fit_strength.h"
@@ -27,8 +28,7 @@ namespace {
 // bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
 double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
 
-// Denser surfaces are coarsened before they are cut. With 0.4, cut and map take less time still, but long limbs fold more. With 1,
-// files of small squares overshoot the PSNR that is asked for.
+// Denser surfaces are coarsened before they are cut. With 0.4, cut and map take less time still, but long limbs fold more.
 constexpr double kVerticesPerSample = 3;
 constexpr double kFewVertices = 50000;  // cost little
 
@@ -62,8 +62,9 @@ void show_cut_search(const FoundCut& found, const Observer& observer) {
 
 CuttableSurface make_cuttable(const Mesh& mesh, const EncodeOptions& options) {
     const double most = std::max(kFewVertices, kVerticesPerSample * options.side * options.side);
-    const Mesh coarsened = is_fitted_to_codec(options) ? coarsened_to(mesh, most) : mesh;
-    Mesh fine = refine_large_faces(coarsened, largest_face(options.side) * surface_area(coarsened));
+    Mesh coarsened = is_fitted_to_codec(options) ? coarsened_to(mesh, most) : mesh;
+    const double largest = largest_face(options.side) * surface_area(coarsened);
+    Mesh fine = refine_large_faces(std::move(coarsened), largest);
     Topology topology = build_topology(fine);
     CoarseSurface coarse = coarsen(fine, kSearchVertices);
     return {std::move(fine), std::move(topology), std::move(coarse)};

@@ -48,9 +48,9 @@ class SquareFit {
     FitRounds rounds_;
     SeamTable seams_;
     std::shared_ptr<const FitSurface> surface_;
-    std::optional<SquareImage>
-        half_;  // every second sample, until a full fit needs them; nothing for small squares, and
-                // where the cut has no room on the coarser grid
+    // Every second sample, until a full fit needs them. Nothing for small squares, and where the cut has no room on the
+    // coarser grid.
+    std::optional<SquareImage> half_;
     std::optional<CodedFit> coarse_;
     double coarse_distance_ = 0;  // of every second sample, as taken from the surface
     CodedFit fine_;

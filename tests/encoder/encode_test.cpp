@@ -354,7 +354,7 @@ TriangleMesh bumpy_sphere() { return corpus::roughened(corpus::sphere(20), 0.01,
 TEST(Encode, PsnrTargetIsMetByFilesFittedToTheCodec) {
     const TriangleMesh mesh = bumpy_sphere();
     EncodeOptions options = coded_options();
-    for (const double target : {52.0, 58.0}) {  // below, single coefficients are worth more than 0.3 dB
+    for (const double target : {55.0, 58.0}) {  // in files below 200 bytes, one coefficient may be worth 1 dB
         options.rate = {RateTarget::Kind::kPsnr, target};
         const auto encoded = encode(mesh, options);
         ASSERT_TRUE(encoded.ok()) << encoded.error().message;
