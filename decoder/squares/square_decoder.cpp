@@ -73,8 +73,8 @@ Status decode_level(const Header& header, std::span<const uint8_t> file, uint32_
 Status read_seams(const Header& header, std::span<const uint8_t> file, uint32_t image, SeamTable* seams) {
     std::span<const uint8_t> payload;
     if (Status s = read_seam_payload(header, file, &payload); s != Status::kOk) return s;
+    std::array<CutPath, kMaxCutPaths> paths;  // made once: a file may have many images
     for (uint32_t i = 0;; ++i) {
-        std::array<CutPath, kMaxCutPaths> paths;
         ParsedSideband parsed;
         if (Status s = parse_sideband(payload, paths, &parsed); s != Status::kOk) return s;
         payload = payload.subspan(parsed.size);

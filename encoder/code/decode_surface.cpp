@@ -12,7 +12,8 @@ gim_status append_image(Decoder& decoder, uint32_t image, uint32_t level, Mesh& 
     DecoderLevel size;
     gim_status status = decoder.read_level(image, 0, &size);
     if (status != GIM_OK) return status;
-    status = decoder.read_level(image, std::min(level, size.coarsest_level), &size);
+    const uint32_t wanted = std::min(level, size.coarsest_level);
+    if (wanted > 0) status = decoder.read_level(image, wanted, &size);
     if (status != GIM_OK) return status;
     std::vector<float> positions(size_t{size.vertex_count} * 3);
     std::vector<uint32_t> triangles(size_t{size.triangle_count} * 3);

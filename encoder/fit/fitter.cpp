@@ -71,7 +71,8 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
                    const std::vector<bool>& held, double front) {
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
     const ImageSurface image(positions, gluing);
-    const auto density = static_cast<uint32_t>(std::max<size_t>(20000, 2 * image.mesh.triangles.size()));
+    const size_t faces = image.mesh.triangles.size();
+    const auto density = static_cast<uint32_t>(std::max(2 * faces, std::min<size_t>(16 * faces, 20000)));
     FitQuality quality;
 
     const ClosestPointTree tree(image.mesh);
@@ -96,7 +97,8 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
 
 double front_side(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference) {
     const ImageSurface image(positions, gluing);
-    const SurfaceSamples samples = sample_by_area(image.mesh, 4000, 1);
+    const auto count = static_cast<uint32_t>(std::min<size_t>(8 * image.mesh.triangles.size(), 4000));
+    const SurfaceSamples samples = sample_by_area(image.mesh, count, 1);
     const std::vector<ClosestPoint> found = reference.tree.find_all(samples.points);
     double sum = 0;
     for (size_t k = 0; k < found.size(); ++k) {

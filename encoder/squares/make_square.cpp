@@ -25,8 +25,12 @@ namespace gim {
 namespace {
 
 // Faces larger than this part of the surface are split before cutting. It is about 8 samples of the image, within
-// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth.
-double largest_face(uint32_t side) { return std::clamp(8.0 / (double(side) * side), 1.0 / 8000, 1.0 / 1000); }
+// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth. Tiny images have
+// two faces a cell at most.
+double largest_face(uint32_t side) {
+    const double samples = double(side) * side, cells = double(side - 1) * (side - 1);
+    return std::clamp(8 / samples, 1.0 / 8000, std::max(1.0 / 1000, 0.5 / cells));
+}
 
 // Denser surfaces are coarsened before they are cut. With 0.4, cut and map take less time still, but long limbs fold more.
 constexpr double kVerticesPerSample = 3;

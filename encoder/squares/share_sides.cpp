@@ -11,7 +11,7 @@ namespace gim {
 
 namespace {
 
-constexpr int kLeastExponent = 3;
+constexpr int kLeastExponent = 2;
 constexpr double kNearlyNext = 0.1;  // octaves that a side may be rounded up
 
 uint64_t cells_of(int exponent) { return uint64_t{1} << (2 * exponent); }
