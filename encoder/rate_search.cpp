@@ -188,7 +188,7 @@ struct RateSearch::Impl {
             quantizer = next.after(tried, octaves);
             const bool is_losing_now = is_losing(bytes, octaves, next.slope(), Values::kFinalExcess);
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
-            if (is_met && std::abs(octaves) <= slack_in_octaves() / 2) return best;
+            if (is_met && octaves <= slack_in_octaves() / 2) return best;
             if (best.empty() && is_losing_now) return lost();
             if (quantizer == tried) break;
         }
