@@ -188,7 +188,9 @@ struct RateSearch::Impl {
             quantizer = next.after(tried, octaves);
             const bool is_losing_now = is_losing(bytes, octaves, next.slope(), Values::kFinalExcess);
             if (is_met && is_better(bytes, best)) best = std::move(bytes);
-            if (is_met && octaves <= slack_in_octaves() / 2) return best;
+            // By how much the file is better than asked: finer than a PSNR needs, or smaller than a budget allows.
+            const double beyond = target_.kind == RateTarget::Kind::kBytes ? -octaves : octaves;
+            if (is_met && beyond <= slack_in_octaves() / 2) return best;
             if (best.empty() && is_losing_now) return lost();
             if (quantizer == tried) break;
         }

@@ -11,7 +11,12 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kSamples = 100000;  // each way; enough for half a decibel many times over
+// Samples of a comparison, each way: enough for half a decibel many times over.
+uint32_t samples_for(const Mesh& surface, const ReferenceSurface& reference) {
+    constexpr size_t kFewest = 20000, kMost = 100000, kEachFace = 32;
+    const size_t faces = surface.triangles.size() + reference.mesh().triangles.size();
+    return static_cast<uint32_t>(std::clamp(kEachFace * faces, kFewest, kMost));
+}
 
 // Returns the sizes of one level; width is 0 if no image has the level.
 Result<LevelReport> describe_level(const Decoder& decoder, uint32_t level) {
@@ -60,7 +65,6 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
     if (const gim_status status = open_own_file(bytes, &decoder); status != GIM_OK)
         return decoding_error(Stage::kCode, status);
     CompareOptions options;
-    options.samples = kSamples;
     options.threads = threads;
     options.defects = true;
     std::vector<LevelReport> levels;
@@ -71,6 +75,7 @@ Result<std::vector<LevelReport>> measure_levels(std::span<const uint8_t> bytes, 
             tell_error(full, &report);
         } else {
             GIM_TRY(surface, decode_surface(bytes, level));
+            options.samples = samples_for(surface, reference);
             GIM_TRY(comparison, reference.compare(surface, options));
             tell_error(comparison, &report);
         }
