@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,27 +62,62 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
     return best;
 }
 
+// The quantizers around a budget of bytes, as base-2 logarithms. An excess is the logarithm of a file's bytes less that of
+// the bytes aimed at.
+class BudgetBracket {
+  public:
+    void add_too_large(double octave, double excess) { fine_ = {octave, excess}; }
+    void add_small(double octave, double excess) { coarse_ = {octave, excess}; }
+
+    bool is_narrow() const { return fine_ && coarse_ && coarse_->octave - fine_->octave < 1e-4; }
+
+    // Returns the quantizer to try after the last one. Sizes leap, so every second file halves the bracket.
+    double next() {
+        halves_ = !halves_;
+        if (!fine_ || !coarse_) return std::clamp(outwards(), Values::kFinest, Values::kCoarsest);
+        const bool halves = halves_ || !(fine_->excess > coarse_->excess);
+        const double part = halves ? 0.5 : std::clamp(fine_->excess / (fine_->excess - coarse_->excess), 0.1, 0.9);
+        return fine_->octave + part * (coarse_->octave - fine_->octave);
+    }
+
+  private:
+    struct Tried {
+        double octave, excess;
+    };
+
+    // Goes on in the direction of the budget, at least twice as far each time.
+    double outwards() {
+        const Tried& last = fine_ ? *fine_ : *coarse_;
+        const double step =
+            std::clamp(1.2 * std::abs(last.excess) / std::log(Values::kBytesPerOctave), least_step_, 2.0);
+        least_step_ = std::min(2 * least_step_, 2.0);
+        return last.octave + (fine_ ? step : -step);
+    }
+
+    std::optional<Tried> fine_, coarse_;  // the coarsest that is too large, the finest that is not
+    double least_step_ = 0.25;
+    bool halves_ = true;
+};
+
 Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
-    double fine = Values::kFinest - 1,
-           coarse = Values::kCoarsest + 1;  // coarsest that is too large, finest that is not; base-2 logarithms
+    const double aim = (1 - 0.4 * Values::kBytesSlack) * budget;
+    BudgetBracket bracket;
     Bytes best;
     double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
     for (int i = 0; i < 2 * Values::kMostFiles; ++i) {
         Bytes bytes = writer.write(std::exp2(at));
         const auto size = static_cast<double>(bytes.size());
         if (size <= budget) {
-            coarse = at;
+            bracket.add_small(at, std::log(size / aim));
             GIM_TRY(is_surface, has_area(bytes));
             if (is_surface) best = std::move(bytes);
             if (size >= (1 - Values::kBytesSlack) * budget || at <= Values::kFinest) break;
         } else {
-            fine = at;
+            bracket.add_too_large(at, std::log(size / aim));
             if (at >= Values::kCoarsest) break;
         }
-        const bool bracketed = fine >= Values::kFinest && coarse <= Values::kCoarsest;
-        if (bracketed && coarse - fine < 1e-4) break;
-        at = bracketed ? 0.5 * (fine + coarse)
-                       : std::clamp(at + (size <= budget ? -2.0 : 2.0), Values::kFinest, Values::kCoarsest);
+        if (bracket.is_narrow()) break;
+        at = bracket.next();
     }
     return best;
 }
