@@ -61,10 +61,12 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
                    ->transform(CLI::CheckedTransformer(layouts).description(""))
                    ->type_name("gim|mcgim|tiles|auto");
     a.size =
-        sub->add_option("--size", a.command.options.side,
-                        "gim: samples per side; several components share the samples of one such image. A cut that "
-                        "does not fit gets the next size, with a warning. Default: 257, or with --psnr, "
-                        "--max-error or --bytes a smaller size if its file is better")
+        sub->add_option(
+               "--size", a.command.options.side,
+               "gim: samples per side; several components share the samples of one such image. A cut that "
+               "does not fit gets the next size, with a warning. Default: 257, or with --psnr, "
+               "--max-error or --bytes a smaller size if its file is better. Takes about 1.4 GB of memory for each "
+               "million samples: 1.6 GB at 1025, 6 GB at 2049, 24 GB at 4097")
             ->check(side_validator(9, 4097));
     a.node_side =
         sub->add_option("--node-side", a.command.options.node_side,

@@ -8,6 +8,7 @@ namespace gim {
 namespace {
 
 constexpr std::chrono::milliseconds kPause(100);  // between two updates of one stage
+constexpr int kLeftWidth = 20;                    // columns of the time that is left
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -20,7 +21,7 @@ ProgressPrinter::~ProgressPrinter() { finish_stage(); }
 void ProgressPrinter::finish_stage() {
     if (visible_ && stage_) {
         const std::string name(stage_name(*stage_));
-        std::fprintf(stderr, "\r  %-14s %7.2f s   \n", name.c_str(), seconds(Clock::now() - begin_));
+        std::fprintf(stderr, "\r  %-14s %7.2f s%*s\n", name.c_str(), seconds(Clock::now() - begin_), kLeftWidth, "");
     }
     stage_.reset();
 }
@@ -33,16 +34,18 @@ void ProgressPrinter::begin_part(const std::string& title) {
 void ProgressPrinter::update(Stage stage, double fraction) {
     if (!visible_) return;
     const Clock::time_point now = Clock::now();
-    if (stage_ != stage) {
+    const bool is_new = stage_ != stage;
+    if (is_new) {
         finish_stage();
         stage_ = stage;
         begin_ = now;
-    } else if (now - printed_ < kPause) {
-        return;
+        left_ = {};
     }
+    const std::optional<double> left = left_.update(fraction, seconds(now.time_since_epoch()));
+    if (!is_new && now - printed_ < kPause) return;
     printed_ = now;
-    const std::string name(stage_name(stage));
-    std::fprintf(stderr, "\r  %-14s %5.0f %%   ", name.c_str(), 100 * fraction);
+    const std::string name(stage_name(stage)), rest = left ? duration_text(*left) + " left" : "";
+    std::fprintf(stderr, "\r  %-14s %5.0f %%   %-*s", name.c_str(), 100 * fraction, kLeftWidth, rest.c_str());
     std::fflush(stderr);
 }
 

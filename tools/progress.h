@@ -1,4 +1,4 @@
-// Prints one line per stage on stderr, while it runs and when it is done. Silent unless stderr is a terminal.
+// Prints one line per stage on stderr: while it runs, what part is done and how long the rest takes; then what it took. Silent unless stderr is a terminal.
 #pragma once
 
 #include <chrono>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gim/encoder.h"
+#include "tools/time_left.h"
 
 namespace gim {
 
@@ -28,6 +29,7 @@ class ProgressPrinter {
 
     bool visible_;
     std::optional<Stage> stage_;
+    TimeLeft left_;  // of the stage
     Clock::time_point begin_;
     Clock::time_point printed_;
 };
