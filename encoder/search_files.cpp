@@ -85,7 +85,7 @@ class BudgetBracket {
         double octave, excess;
     };
 
-    // Goes on in the direction of the budget, at least twice as far each time.
+    // Goes on towards the budget: as far as the excess asks for, but farther where that was not enough before.
     double outwards() {
         const Tried& last = fine_ ? *fine_ : *coarse_;
         const double step =

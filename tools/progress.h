@@ -1,4 +1,5 @@
-// Prints one line per stage on stderr: while it runs, what part is done and how long the rest takes; then what it took. Silent unless stderr is a terminal.
+// Prints one line per stage on stderr: while it runs, what part is done and how long the rest takes; then what it took.
+// Silent unless stderr is a terminal.
 #pragma once
 
 #include <chrono>

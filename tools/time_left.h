@@ -14,7 +14,7 @@ class TimeLeft {
     std::optional<double> update(double fraction, double now);
 
   private:
-    double first_fraction_ = 0, last_fraction_ = 2, begin_ = 0;
+    double first_fraction_ = 0, last_fraction_ = 2, begin_ = 0;  // 2: nothing yet
 };
 
 // Returns "8 s", "2 min 10 s" or "1 h 5 min". Rounded more coarsely the more it is; not negative.

@@ -72,7 +72,7 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
     const ImageSurface image(positions, gluing);
     const size_t faces = image.mesh.triangles.size();
-    const auto density = static_cast<uint32_t>(std::max(2 * faces, std::min<size_t>(16 * faces, 20000)));
+    const auto density = static_cast<uint32_t>(std::clamp<size_t>(20000, 2 * faces, 16 * faces));
     FitQuality quality;
 
     const ClosestPointTree tree(image.mesh);

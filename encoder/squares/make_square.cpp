@@ -25,8 +25,8 @@ namespace gim {
 namespace {
 
 // Faces larger than this part of the surface are split before cutting. It is about 8 samples of the image, within
-// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth. Tiny images have
-// two faces a cell at most.
+// bounds: with too few faces the cut has no choice, and too many cost more time than they are worth. In tiny
+// images, faces of half a cell or less stay whole.
 double largest_face(uint32_t side) {
     const double samples = double(side) * side, cells = double(side - 1) * (side - 1);
     return std::clamp(8 / samples, 1.0 / 8000, std::max(1.0 / 1000, 0.5 / cells));
