@@ -62,8 +62,7 @@ Result<Bytes> search_psnr(const FileWriter& writer, double start, double target,
     return best;
 }
 
-// The quantizers around a budget of bytes, as base-2 logarithms. An excess is the logarithm of a file's bytes less that of
-// the bytes aimed at.
+// The quantizers around a budget of bytes, as base-2 logarithms. An excess is octaves_to() the bytes aimed at.
 class BudgetBracket {
   public:
     void add_too_large(double octave, double excess) { fine_ = {octave, excess}; }
@@ -88,8 +87,7 @@ class BudgetBracket {
     // Goes on towards the budget: as far as the excess asks for, but farther where that was not enough before.
     double outwards() {
         const Tried& last = fine_ ? *fine_ : *coarse_;
-        const double step =
-            std::clamp(1.2 * std::abs(last.excess) / std::log(Values::kBytesPerOctave), least_step_, 2.0);
+        const double step = std::clamp(1.2 * std::abs(last.excess), least_step_, 2.0);
         least_step_ = std::min(2 * least_step_, 2.0);
         return last.octave + (fine_ ? step : -step);
     }
@@ -100,20 +98,21 @@ class BudgetBracket {
 };
 
 Result<Bytes> search_bytes(const FileWriter& writer, double start, double budget) {
-    const double aim = (1 - 0.4 * Values::kBytesSlack) * budget;
+    const RateTarget aim{RateTarget::Kind::kBytes, (1 - 0.4 * Values::kBytesSlack) * budget};
     BudgetBracket bracket;
     Bytes best;
     double at = std::clamp(start, Values::kFinest, Values::kCoarsest);
     for (int i = 0; i < 2 * Values::kMostFiles; ++i) {
         Bytes bytes = writer.write(std::exp2(at));
         const auto size = static_cast<double>(bytes.size());
+        const double excess = octaves_to(aim, size, 0);
         if (size <= budget) {
-            bracket.add_small(at, std::log(size / aim));
+            bracket.add_small(at, excess);
             GIM_TRY(is_surface, has_area(bytes));
             if (is_surface) best = std::move(bytes);
             if (size >= (1 - Values::kBytesSlack) * budget || at <= Values::kFinest) break;
         } else {
-            bracket.add_too_large(at, std::log(size / aim));
+            bracket.add_too_large(at, excess);
             if (at >= Values::kCoarsest) break;
         }
         if (bracket.is_narrow()) break;
