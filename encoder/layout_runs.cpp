@@ -91,8 +91,9 @@ CodingRuns LayoutRuns::runs(const Contest& contest) {
 }
 
 Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {
-    return layout() == Layout::kTiles ? best_of_tiles(runs(contest), now, tileable_.has_creases())
-                                      : best_of_sizes(runs(contest), now);
+    return layout() == Layout::kTiles
+               ? best_of_tiles(runs(contest), now, tileable_.has_creases(), contest.is_target_rough)
+               : best_of_sizes(runs(contest), now);
 }
 
 Result<Encoded> LayoutRuns::best(const Contest& contest) {

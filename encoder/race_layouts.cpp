@@ -24,10 +24,16 @@ constexpr double kFirstExcess = 0.25;
 // fits take 11 to 17 % more bytes than full ones, so a layout that would gain less than 1 % is left out.
 constexpr double kBriefExcess = 0.12;
 
-// The highest cost of brief fits that leaves a chance against a file.
-double most_to_beat(const Encoded& rival) {
-    return log_bytes(double(rival.bytes.size()), rival.report.error.psnr) + std::log1p(kBriefExcess);
+// By how much of its bytes the brief fit of a layout may seem larger than that of the cheapest one, and it is coded all the
+// same.
+constexpr double kBriefNoise = 0.02;
+
+double cost_of(const Encoded& encoded) {
+    return log_bytes(double(encoded.bytes.size()), encoded.report.error.psnr);
 }
+
+// The highest cost of brief fits that leaves a chance against a file.
+double most_to_beat(const Encoded& rival) { return cost_of(rival) + std::log1p(kBriefExcess); }
 
 bool may_race(const LayoutEntry& entry, const EncodeOptions& options) {
     return entry.races && (entry.layout == Layout::kGim || effort_of(options).races);
@@ -46,9 +52,8 @@ class Race {
         if (!is_searched(options_.rate)) set_the_pace();
         line_up();
         for (Racer& racer : racers_) {
-            if (racer.has_chance(best_)) {
-                const Contest contest = best_ && best_->ok() ? contest_with(*best_) : Contest{};
-                auto encoded = racer.runs->best(contest);
+            if (has_chance(racer)) {
+                auto encoded = racer.runs->best(contest());
                 const bool has_cost = note_cost(encoded);
                 take(std::move(encoded));
                 if (has_cost) continue;
@@ -63,27 +68,41 @@ class Race {
     struct Racer {
         std::unique_ptr<LayoutRuns> runs;
         std::optional<double> log_bytes;  // of brief fits; nothing if they are not known
-
-        bool has_chance(const std::optional<Result<Encoded>>& best) const {
-            if (!best || !best->ok() || !log_bytes) return true;
-            return *log_bytes < most_to_beat(best->value());
-        }
     };
 
-    // The first layout that can make images codes them at the quality that is asked for. The others must reach its PSNR.
+    // The first layout that can make images has the quality that is asked for. The others must reach the PSNR of its brief
+    // fit, by brief fits too.
     void set_the_pace() {
-        while (!entries_.empty() && !(best_ && best_->ok())) {
-            auto encoded = LayoutRuns(*entries_.front(), prepared_, options_, clock_, observer_).best({});
-            note_cost(encoded);
-            take(std::move(encoded));
+        while (entries_.size() > 1 && racers_.empty()) {
+            auto runs = std::make_unique<LayoutRuns>(*entries_.front(), prepared_, options_, clock_, observer_);
             entries_.erase(entries_.begin());
+            const auto estimate = runs->estimate();
+            if (!estimate.ok()) {
+                take(estimate.error());
+                continue;
+            }
+            racers_.push_back({std::move(runs), estimate.value().log_bytes});
+            options_.rate = {RateTarget::Kind::kPsnr, estimate.value().psnr};
+            is_target_rough_ = true;
         }
-        if (best_->ok()) options_.rate = {RateTarget::Kind::kPsnr, best_->value().report.error.psnr};
+    }
+
+    // Where brief fits also decided about the target, those alone tell who is coded, and only the file of who is nearly as
+    // cheap may still be the best one.
+    bool has_chance(const Racer& racer) const {
+        if (!best_ || !best_->ok() || !racer.log_bytes) return true;
+        if (is_target_rough_) return *racer.log_bytes < cost(racers_.front()) + std::log1p(kBriefNoise);
+        return *racer.log_bytes < most_to_beat(best_->value());
+    }
+
+    Contest contest() const {
+        if (is_target_rough_) return {0, false, true};
+        return best_ && best_->ok() ? contest_with(*best_) : Contest{};
     }
 
     // Estimates what each layout costs, the cheapest first.
     void line_up() {
-        const bool is_alone = entries_.size() == 1 && !best_;
+        const bool is_alone = entries_.size() + racers_.size() == 1 && !best_;
         for (const LayoutEntry* entry : entries_) {
             racers_.push_back({std::make_unique<LayoutRuns>(*entry, prepared_, options_, clock_, observer_), {}});
             if (!is_alone) note(racers_.back(), racers_.back().runs->first_estimate());
@@ -115,7 +134,12 @@ class Race {
     }
 
     void take(Result<Encoded> encoded) {
-        if (!best_ || improves(encoded, *best_, options_.rate)) best_.emplace(std::move(encoded));
+        if (!best_ || is_better(encoded, *best_)) best_.emplace(std::move(encoded));
+    }
+
+    bool is_better(const Result<Encoded>& now, const Result<Encoded>& best) const {
+        if (!is_target_rough_ || !now.ok() || !best.ok()) return improves(now, best, options_.rate);
+        return cost_of(now.value()) < cost_of(best.value());
     }
 
     bool note_cost(const Result<Encoded>& encoded) {
@@ -145,6 +169,7 @@ class Race {
     std::vector<Racer> racers_;
     std::vector<LayoutCost> costs_;
     std::optional<Result<Encoded>> best_;  // or the first error
+    bool is_target_rough_ = false;
 };
 
 }  // namespace

@@ -59,7 +59,7 @@ struct RateSearch::Impl {
     Result<Estimate> estimate(std::optional<double> near) {
         const double quantizer = near.value_or(first_quantizer_);
         if (images_.is_fitted_to_quantizer()) {
-            GIM_TRY(approached, approach(quantizer, near.has_value()));
+            GIM_TRY(approached, is_searched(target_) ? approach(quantizer, near.has_value()) : fit_briefly(quantizer));
             approached_ = std::move(approached);
         } else {
             parameters_.quantizer = quantizer;
@@ -70,7 +70,8 @@ struct RateSearch::Impl {
             GIM_TRY(comparison, compare_file(approached_->bytes, reference_, quick_));
             approached_->psnr = comparison.psnr;
         }
-        return Estimate{log_bytes(double(approached_->bytes.size()), *approached_->psnr), approached_->quantizer};
+        const double psnr = *approached_->psnr;
+        return Estimate{log_bytes(double(approached_->bytes.size()), psnr), approached_->quantizer, psnr};
     }
 
     Result<Bytes> run(const Contest& contest) {
@@ -92,7 +93,12 @@ struct RateSearch::Impl {
 
     Result<Bytes> approach_and_code() {
         if (!images_.is_fitted_to_quantizer()) return search(first_quantizer_);
-        if (target_.kind == RateTarget::Kind::kQuality) return fitted_file(first_quantizer_, CodedFit::Effort::kFinal);
+        if (target_.kind == RateTarget::Kind::kQuality) {
+            if (approached_) images_.forget_fits();  // the file is the one without an estimate
+            return fitted_file(first_quantizer_, CodedFit::Effort::kFinal);
+        }
+        if (approached_ && contest_.is_target_rough)
+            return fitted_file(approached_->quantizer, CodedFit::Effort::kFinal);
         if (approached_) return fit_to_target(approached_->quantizer);
         GIM_TRY(approached, approach(first_quantizer_, false));
         return fit_to_target(approached.quantizer);
@@ -156,6 +162,11 @@ struct RateSearch::Impl {
         if (contest_.is_finer_to_come && are_samples_few) return true;
         const double at_target = double(bytes.size()) * std::pow(Values::kBytesPerOctave, -room);
         return contest_.rival_bytes > 0 && at_target > (1 + over) * contest_.rival_bytes;
+    }
+
+    Result<Approached> fit_briefly(double quantizer) {
+        GIM_TRY(bytes, fitted_file(quantizer, CodedFit::Effort::kSearch));
+        return Approached{std::move(bytes), quantizer, {}};
     }
 
     // Approaches the target's quantizer by quick fits. afresh: each begins anew. Where several images are compared, one whose

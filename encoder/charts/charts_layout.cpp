@@ -60,6 +60,7 @@ class ChartsLayout final : public LayoutImages {
     }
 
     void restart_fit() override { fit_->restart(); }
+    void forget_fits() override { fit_->forget(); }
 
     void describe(EncodeReport& report) const override {
         report.layout = Layout::kMcgim;

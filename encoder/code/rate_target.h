@@ -79,6 +79,7 @@ double octaves_to(const RateTarget& target, double bytes, double psnr);
 struct Estimate {
     double log_bytes = 0;  // the cost of the file
     double quantizer = 0;  // about the one that meets the target
+    double psnr = 0;       // of the brief fit
 };
 
 // The cost of a file in one number: the natural logarithm of its bytes, converted to the same PSNR for all files of a

@@ -255,6 +255,12 @@ CodedFit::CodedFit(const GeometryImage& start, const MakeFitCodec& make_codec,
 
 void CodedFit::restart() { impl_->fitter.place(impl_->first_positions); }
 
+void CodedFit::forget() {
+    impl_->fitter.begin_at(impl_->first_positions);
+    impl_->rounds = 0;
+    impl_->cycled_positions.clear();
+}
+
 void CodedFit::repair(std::span<Pyramid<int32_t>> bands, const Units& units) { impl_->codec->repair(bands, units); }
 
 std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progress& progress) {

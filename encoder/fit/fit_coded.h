@@ -64,6 +64,8 @@ class CodedFit {
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units);
     // Makes the next call begin at the start again. Otherwise samples that a coarse quantizer heaped up stay together.
     void restart();
+    // The same, as if there had been no call.
+    void forget();
 
     std::vector<Vec3> positions() const;
     // Makes the next call begin at these samples. Glued ones go to their mean.

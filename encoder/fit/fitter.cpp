@@ -72,7 +72,7 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
     const ImageSurface image(positions, gluing);
     const size_t faces = image.mesh.triangles.size();
-    const auto density = static_cast<uint32_t>(std::clamp<size_t>(20000, 2 * faces, 16 * faces));
+    const auto density = static_cast<uint32_t>(std::max(faces / 2, std::min<size_t>(20000, 16 * faces)));
     FitQuality quality;
 
     const ClosestPointTree tree(image.mesh);
@@ -139,6 +139,11 @@ Fitter::Fitter(const std::vector<Vec3>& start, const FitReference& reference, co
         on_boundary_.push_back(v);
     }
     front_ = front_side(x_, gluing_, reference_);
+}
+
+void Fitter::begin_at(std::vector<Vec3> positions) {
+    place(std::move(positions));
+    face_hint_.assign(face_hint_.size(), kNone);
 }
 
 FitQuality Fitter::quality() const { return measure(x_, gluing_, reference_, held_, front_); }

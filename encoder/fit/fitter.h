@@ -67,6 +67,8 @@ class Fitter {
     uint64_t folds() const;  // the same number as in quality()
     // positions: in the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }
+    // The same, and forgets what earlier rounds told of the reference.
+    void begin_at(std::vector<Vec3> positions);
 
     // Slides the samples around faces that look away from the surface. They move along the surface, towards the middle
     // of their neighbours. Sampling leaves such faces where the map squeezes the surface: rows are then too near to

@@ -16,7 +16,7 @@ struct CodingRuns {
     // Makes and codes images with these options. contest: the other runs.
     std::function<Result<Encoded>(const EncodeOptions& options, const Contest& contest)> code;
     // Makes images with these options, and estimates what their file costs. near: the quantizer of an earlier estimate.
-    // The images wait for code(). Only for targets that are searched for.
+    // The images wait for code().
     std::function<Result<Estimate>(const EncodeOptions& options, std::optional<double> near)> estimate;
 };
 
@@ -29,14 +29,14 @@ inline bool improves(const Result<Encoded>& now, const Result<Encoded>& best, co
 
 // The contest of a run that follows the best one.
 inline Contest contest_with(const Result<Encoded>& best) {
-    return {best.ok() ? double(best.value().bytes.size()) : 0, false};
+    return {best.ok() ? double(best.value().bytes.size()) : 0, false, false};
 }
 
 // The contest of a run that has rivals of both.
 inline Contest joined(const Contest& a, const Contest& b) {
     const bool both = a.rival_bytes > 0 && b.rival_bytes > 0;
     return {both ? std::min(a.rival_bytes, b.rival_bytes) : std::max(a.rival_bytes, b.rival_bytes),
-            a.is_finer_to_come || b.is_finer_to_come};
+            a.is_finer_to_come || b.is_finer_to_come, a.is_target_rough || b.is_target_rough};
 }
 
 }  // namespace gim

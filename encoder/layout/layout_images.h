@@ -23,6 +23,8 @@ class LayoutImages : public PlaneImages {
     virtual void fit(const CodingParameters&, CodedFit::Effort, StageClock&) {}
     // Makes the next fit start from the first samples.
     virtual void restart_fit() {}
+    // The same, and makes it the first fit again.
+    virtual void forget_fits() {}
 
     // Returns a writer that codes seams and levels of the images as they are now.
     virtual Result<FileWriter> writer(const CodingParameters& parameters) const = 0;

@@ -35,6 +35,7 @@ class SquareFit {
     std::vector<Vec3> run(const Units& units, CodedFit::Effort effort, const Progress& progress = {});
     void repair(std::span<Pyramid<int32_t>> bands, const Units& units) { fine_.repair(bands, units); }
     void restart() { fine_.restart(); }
+    void forget() { fine_.forget(); }
     uint64_t folds() const { return fine_.folds(); }
 
   private:

@@ -61,6 +61,10 @@ class SquaresLayout final : public LayoutImages {
         for (SquareFit& fit : fits_) fit.restart();
     }
 
+    void forget_fits() override {
+        for (SquareFit& fit : fits_) fit.forget();
+    }
+
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
         CodingParameters with_units = parameters;
         with_units.units = units_;

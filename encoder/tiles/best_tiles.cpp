@@ -133,10 +133,12 @@ Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOp
     return trials.cheapest_first();
 }
 
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases) {
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
+                              bool is_brief_enough) {
     if (!is_searched(options.rate)) return code_once(runs, usual(options, has_creases));
     GIM_TRY(tried, try_tiles(runs, options, has_creases));
     auto best = runs.code(tried[0].options, {});
+    if (is_brief_enough) return best;
     for (size_t k = 1; k < tried.size(); ++k) {
         const auto& [variant, estimate] = tried[k];
         const double noise = std::log1p(variant.creases ? kNoiseWithCreases : kNoise);

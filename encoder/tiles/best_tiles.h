@@ -30,7 +30,8 @@ Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOp
 
 // If the target is searched for, codes the cheapest of try_tiles(), and those that cost almost the same; one that is sure
 // to lose ends early (contest.h). Else tiles keep creases if that leads to a file; without loss, they fill
-// options.samples. Returns the best file.
-Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
+// options.samples. Returns the best file. is_brief_enough: codes only the cheapest.
+Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
+                              bool is_brief_enough);
 
 }  // namespace gim

@@ -69,6 +69,10 @@ class TilesLayout final : public LayoutImages {
         if (fit_) fit_->restart();
     }
 
+    void forget_fits() override {
+        if (fit_) fit_->forget();
+    }
+
     Result<FileWriter> writer(const CodingParameters& parameters) const override {
         CodingParameters with_units = parameters;
         with_units.units = units_;

@@ -83,15 +83,26 @@ TEST(ChooseLayout, OfSquaresAndTilesTheSmallerFileIsKept) {
     EXPECT_LT(wins_of_tiles, std::size(meshes));
 }
 
-// What the square reaches at a quality is what the other layouts must reach.
-TEST(ChooseLayout, AtAQualityTheWinnerReachesThePsnrOfTheSquare) {
-    constexpr RateTarget kQuality{RateTarget::Kind::kQuality, 45};
-    for (const TriangleMesh& mesh : {corpus::terrain(24), corpus::plate_with_holes(2, 4)}) {
+// What the square reaches at a quality is about what the other layouts must reach. A square that wins is the file that it
+// is alone.
+TEST(ChooseLayout, AtAQualityTheWinnerReachesAboutThePsnrOfTheSquare) {
+    constexpr RateTarget kQuality{RateTarget::Kind::kQuality, 60};
+    constexpr double kAbout = 0.5;  // dB
+    size_t wins_of_squares = 0;
+    const TriangleMesh meshes[] = {corpus::terrain(24), corpus::limbed_blob(24)};
+    for (const TriangleMesh& mesh : meshes) {
         const auto square = raced(Layout::kGim, mesh, kQuality), best = raced(Layout::kAuto, mesh, kQuality);
         ASSERT_TRUE(square.ok() && best.ok());
-        EXPECT_GE(best.value().report.error.psnr, square.value().report.error.psnr);
-        EXPECT_LE(best.value().bytes.size(), square.value().bytes.size());
+        if (best.value().report.layout == Layout::kGim) {
+            ++wins_of_squares;
+            EXPECT_EQ(best.value().bytes, square.value().bytes);
+            continue;
+        }
+        EXPECT_NEAR(best.value().report.error.psnr, square.value().report.error.psnr, kAbout);
+        EXPECT_LT(best.value().bytes.size(), square.value().bytes.size());
     }
+    EXPECT_GT(wins_of_squares, 0);
+    EXPECT_LT(wins_of_squares, std::size(meshes));
 }
 
 TEST(ChooseLayout, ColoursAreKeptWhateverWins) {
