@@ -46,7 +46,7 @@ struct Schedule {
 // The stiff lambda makes files of 65 and 70 dB smallest: 0.03 to 0.05 on bunny-closed, horse, gargoyle and rocker-arm.
 // 0.08 takes about 1 % more bytes, 0.3 takes 4 to 11 % more.
 Schedule schedule_of(const FitOptions& options) {
-    Schedule schedule = options.strength == FitOptions::Strength::kStiff ? Schedule{0.05, 0.05, 7, 1.5, 2}
+    Schedule schedule = options.strength == FitOptions::Strength::kStiff ? Schedule{0.05, 0.05, 5, 1, 1.5}
                                                                          : Schedule{0.02, 0.0003, 16, 1, 3.5};
     if (options.thorough && options.strength == FitOptions::Strength::kLoose) schedule = {0.02, 0.0001, 32, 1, 3.5};
     if (options.rounds > 0) schedule.rounds = options.rounds;

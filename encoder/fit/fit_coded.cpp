@@ -74,7 +74,8 @@ float tangential_pull_of(CodedFit::Effort effort) {
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
-constexpr double kDensity = 1.5;  // samples of the reference per face
+// Samples of the reference per face. What cycles that other rounds follow lack of it, these find.
+constexpr double kDensity = 1.5, kDensityOfCycles = 0.75;
 constexpr double kTolerance = 1e-4;
 
 double dot(const Coordinates& a, const Coordinates& b) {
@@ -214,8 +215,8 @@ struct CodedFit::Impl {
     }
 
     // Runs one round (see the head of this file). tangential_pull: as Prices.
-    void round(const Units& units, Free free, float tangential_pull) {
-        const FitSystem system = fitter.linearise(kMembrane, kDensity, mix_bits(seed) + 2 * rounds++);
+    void round(const Units& units, Free free, float tangential_pull, double density) {
+        const FitSystem system = fitter.linearise(kMembrane, density, mix_bits(seed) + 2 * rounds++);
         const DetailCoding coding = detail_coding_of(units);
         const std::vector<float> image = samples_in(units);
         const auto [basis, c] = codec->coordinates(image, coding);
@@ -268,20 +269,24 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     int done = 0;
     const bool is_alone = impl_->rounds == 0 && effort != Effort::kSearch;
     const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;
+    bool mends_folds = false;  // what cycles mend, later rounds would undo
+    // The brief fit's one cycle is its last part too.
+    const double density_of_cycles = effort == Effort::kSearch ? kDensity : kDensityOfCycles;
     // reach: how far the unfolding before a free round may move samples; before the last `full` of them, as far as it takes.
-    const auto rounds = [&](const Schedule::Part& part, double reach, int full) {
+    const auto rounds = [&](const Schedule::Part& part, double reach, int full, double density) {
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
-            if (free == Free::kNormals) impl_->quantize(units, effort != Effort::kSearch);
+            if (free == Free::kNormals) impl_->quantize(units, mends_folds);
             if (free == Free::kAll) impl_->unfold(is_alone || k >= part.free - full ? kFarthest : reach);
-            impl_->round(units, free, tangential_pull_of(effort));
+            impl_->round(units, free, tangential_pull_of(effort), density);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
-    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, 0);
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, 0, density_of_cycles);
     if (effort == Effort::kFinal || effort == Effort::kRefine) impl_->keep_as_cycled();
-    rounds(schedule.last, 0, kFullUnfoldings);
+    mends_folds = true;
+    rounds(schedule.last, 0, kFullUnfoldings, kDensity);
     return positions();
 }
 

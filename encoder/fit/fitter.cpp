@@ -6,6 +6,7 @@
 
 #include "encoder/base/parallel.h"
 #include "encoder/fit/image_surface.h"
+#include "encoder/surface/space_order.h"
 #include "encoder/surface/surface_samples.h"
 #include "encoder/surface/topology_summary.h"
 
@@ -65,7 +66,7 @@ FitFrame::FitFrame(const Mesh& mesh) {
 }
 
 FitReference::FitReference(Mesh input)
-    : mesh(std::move(input)), normals(face_normals(mesh)), tree(mesh), curve(boundary_curve(mesh)), curve_tree(curve) {}
+    : mesh(in_space_order(std::move(input))), normals(face_normals(mesh)), tree(mesh), curve(boundary_curve(mesh)), curve_tree(curve) {}
 
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
                    const std::vector<bool>& held, double front) {

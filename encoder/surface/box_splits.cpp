@@ -8,7 +8,7 @@ namespace gim {
 
 namespace {
 
-constexpr uint32_t kLeafItems = 4;
+constexpr uint32_t kLeafItems = 2;
 constexpr uint32_t kBins = 16;
 constexpr float kInfinity = Box::kInfinity;
 

@@ -1,6 +1,6 @@
 // Finds closest points on a triangle mesh with a bounding-volume hierarchy. Exact (double precision), deterministic.
 //
-// The hierarchy is a four-wide tree of float boxes, split by the surface-area heuristic. Leaves hold up to four
+// The hierarchy is a four-wide tree of float boxes, split by the surface-area heuristic. Leaves hold one or two
 // triangles, which are tested exactly in double precision. Boxes are rounded outwards, so they decide only which
 // triangles are tested, never the result. Any mesh will do: zero-area triangles count as segments or points.
 #pragma once
