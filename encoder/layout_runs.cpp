@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/base/at_once.h"
 #include "encoder/best_size.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/planes/labels.h"
@@ -23,21 +24,55 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
     options_.layout = layout.layout;
 }
 
-Result<std::unique_ptr<FileRun>> LayoutRuns::make(const EncodeOptions& now, const Observer& observer,
-                                                  CutPreferences& cuts) {
+Result<LayoutRuns::Made> LayoutRuns::make(const EncodeOptions& now, const Observer& observer, CutPreferences& cuts,
+                                          StageClock& clock) {
     GIM_CHECK(check_labels(prepared_.original.input, layout()));
     EncodeReport report = prepared_.report;
     const bool may_grow = now.side == options_.side && now.samples == options_.samples;  // smaller sizes are trials
-    GIM_TRY(images, layout_.make({prepared_.mesh, now, clock_, observer, report, cuts, tileable_, may_grow}));
-    return std::make_unique<FileRun>(std::move(images), prepared_.original, now, clock_, std::move(report));
+    GIM_TRY(images, layout_.make({prepared_.mesh, now, clock, observer, report, cuts, tileable_, may_grow}));
+    return Made{std::move(images), std::move(report)};
+}
+
+std::unique_ptr<FileRun> LayoutRuns::run_of(Made made, const EncodeOptions& now) {
+    return std::make_unique<FileRun>(std::move(made.images), prepared_.original, now, clock_, std::move(made.report));
 }
 
 Result<LayoutRuns::Started*> LayoutRuns::start(const EncodeOptions& now) {
     Started& started = started_[variant_of(now)];
     if (started.run) return &started;
-    GIM_TRY(run, make(now, std::exchange(observer_, {}), cuts_));
-    started.run = std::move(run);
+    if (!started.made) {
+        GIM_TRY(made, make(now, std::exchange(observer_, {}), cuts_, clock_));
+        started.made = std::move(made);
+    }
+    started.run = run_of(std::move(*started.made), now);
+    started.made.reset();
     return &started;
+}
+
+void LayoutRuns::make_quietly(const EncodeOptions& now, Started& started) {
+    if (started.made || started.run) return;
+    StageClock quiet({});
+    CutPreferences cuts = cuts_;
+    auto made = make(now, {}, cuts, quiet);
+    if (made.ok()) started.made = std::move(made.value());
+}
+
+void LayoutRuns::make_ahead() {
+    const bool are_tiles = layout() == Layout::kTiles;
+    if (observer_ || (!are_tiles && may_choose_cut(options_))) return;
+    const EncodeOptions now =
+        are_tiles ? usual_tiles(options_, tileable_.has_creases()) : size_variants(options_).front();
+    make_quietly(now, started_[variant_of(now)]);
+}
+
+void LayoutRuns::make_all_ahead(const std::vector<EncodeOptions>& all) {
+    std::vector<Started*> waiting;
+    for (const EncodeOptions& now : all) {
+        tileable_.of(now.creases);  // made here, for what follows only reads it
+        waiting.push_back(&started_[variant_of(now)]);
+    }
+    clock_.begin(Stage::kParametrize);
+    for_each_at_once(all.size(), clock_, [&](size_t i) { make_quietly(all[i], *waiting[i]); });
 }
 
 Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional<double> near) {
@@ -53,8 +88,8 @@ Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional
 Result<Estimate> LayoutRuns::estimate_without_choice(const EncodeOptions& now) {
     if (!may_choose_cut(now)) return estimate_of(now, {});
     CutPreferences cuts = usual_cuts(prepared_.mesh);
-    GIM_TRY(run, make(now, {}, cuts));
-    return run->estimate({});
+    GIM_TRY(made, make(now, {}, cuts, clock_));
+    return run_of(std::move(made), now)->estimate({});
 }
 
 Result<Estimate> LayoutRuns::first_estimate() {
@@ -87,7 +122,8 @@ CodingRuns LayoutRuns::runs(const Contest& contest) {
     const auto estimate = [this](const EncodeOptions& variant, std::optional<double> near) {
         return estimate_of(variant, near);
     };
-    return {code, estimate};
+    const auto make_ahead = [this](const std::vector<EncodeOptions>& all) { make_all_ahead(all); };
+    return {code, estimate, make_ahead};
 }
 
 Result<Encoded> LayoutRuns::best_of_variants(const EncodeOptions& now, const Contest& contest) {

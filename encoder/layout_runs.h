@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "encoder/base/result.h"
 #include "encoder/base/stage_clock.h"
@@ -35,6 +36,13 @@ class LayoutRuns {
 
     Layout layout() const { return layout_.layout; }
 
+    // Sets another target that needs the same images. Only before the first estimate.
+    void aim(const RateTarget& rate) { options_.rate = rate; }
+
+    // Makes the images of the variant that comes first, and does not use the clock. They wait for the calls below, which also tell
+    // what fails. Does nothing where the cut is chosen, or somebody looks on.
+    void make_ahead();
+
     // Makes the images of the variant that comes first, and fits them briefly. Returns what it costs. Squares are cut the
     // usual way, without a choice. Only for targets that are searched for. Images of tiles wait for estimate() and best().
     Result<Estimate> first_estimate();
@@ -48,7 +56,12 @@ class LayoutRuns {
     Result<Encoded> best(const Contest& contest);
 
   private:
+    struct Made {
+        std::unique_ptr<LayoutImages> images;
+        EncodeReport report;
+    };
     struct Started {
+        std::optional<Made> made;  // ahead; empty once it runs
         std::unique_ptr<FileRun> run;
         std::optional<Estimate> estimate;
     };
@@ -58,7 +71,10 @@ class LayoutRuns {
     CodingRuns runs(const Contest& contest);
     Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);
     Result<Started*> start(const EncodeOptions& now);
-    Result<std::unique_ptr<FileRun>> make(const EncodeOptions& now, const Observer& observer, CutPreferences& cuts);
+    void make_all_ahead(const std::vector<EncodeOptions>& all);
+    void make_quietly(const EncodeOptions& now, Started& started);
+    Result<Made> make(const EncodeOptions& now, const Observer& observer, CutPreferences& cuts, StageClock& clock);
+    std::unique_ptr<FileRun> run_of(Made made, const EncodeOptions& now);
     Result<Estimate> estimate_without_choice(const EncodeOptions& now);
     Result<Estimate> estimate_of(const EncodeOptions& now, std::optional<double> near);
 

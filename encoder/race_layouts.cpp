@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "encoder/base/at_once.h"
 #include "encoder/code/rate_target.h"
 #include "encoder/fit/effort.h"
 #include "encoder/layout/encode_once.h"
@@ -28,9 +29,7 @@ constexpr double kBriefExcess = 0.12;
 // same.
 constexpr double kBriefNoise = 0.02;
 
-double cost_of(const Encoded& encoded) {
-    return log_bytes(double(encoded.bytes.size()), encoded.report.error.psnr);
-}
+double cost_of(const Encoded& encoded) { return log_bytes(double(encoded.bytes.size()), encoded.report.error.psnr); }
 
 // The highest cost of brief fits that leaves a chance against a file.
 double most_to_beat(const Encoded& rival) { return cost_of(rival) + std::log1p(kBriefExcess); }
@@ -42,9 +41,10 @@ bool may_race(const LayoutEntry& entry, const EncodeOptions& options) {
 class Race {
   public:
     Race(const Prepared& prepared, const EncodeOptions& options, StageClock& clock, const Observer& observer)
-        : prepared_(prepared), options_(options), clock_(clock), observer_(observer) {
+        : options_(options), clock_(clock) {
         for (const LayoutEntry& entry : all_layouts()) {
-            if (may_race(entry, options)) entries_.push_back(&entry);
+            if (may_race(entry, options))
+                waiting_.push_back(std::make_unique<LayoutRuns>(entry, prepared, options, clock, observer));
         }
     }
 
@@ -73,18 +73,22 @@ class Race {
     // The first layout that can make images has the quality that is asked for. The others must reach the PSNR of its brief
     // fit, by brief fits too.
     void set_the_pace() {
-        while (entries_.size() > 1 && racers_.empty()) {
-            auto runs = std::make_unique<LayoutRuns>(*entries_.front(), prepared_, options_, clock_, observer_);
-            entries_.erase(entries_.begin());
-            const auto estimate = runs->estimate();
-            if (!estimate.ok()) {
+        if (waiting_.size() < 2) return;
+        clock_.begin(Stage::kParametrize);
+        for_each_at_once(waiting_.size(), clock_, [&](size_t i) { waiting_[i]->make_ahead(); });
+        while (racers_.empty() && !waiting_.empty()) {
+            const auto estimate = waiting_.front()->estimate();
+            if (estimate.ok()) {
+                racers_.push_back({std::move(waiting_.front()), estimate.value().log_bytes});
+                is_target_rough_ = true;
+                options_.rate = {RateTarget::Kind::kPsnr, estimate.value().psnr};
+            } else {
                 take(estimate.error());
-                continue;
             }
-            racers_.push_back({std::move(runs), estimate.value().log_bytes});
-            options_.rate = {RateTarget::Kind::kPsnr, estimate.value().psnr};
-            is_target_rough_ = true;
+            waiting_.erase(waiting_.begin());
         }
+        if (is_target_rough_)
+            for (const auto& runs : waiting_) runs->aim(options_.rate);
     }
 
     // Where brief fits also decided about the target, those alone tell who is coded, and only the file of who is nearly as
@@ -102,9 +106,9 @@ class Race {
 
     // Estimates what each layout costs, the cheapest first.
     void line_up() {
-        const bool is_alone = entries_.size() + racers_.size() == 1 && !best_;
-        for (const LayoutEntry* entry : entries_) {
-            racers_.push_back({std::make_unique<LayoutRuns>(*entry, prepared_, options_, clock_, observer_), {}});
+        const bool is_alone = waiting_.size() + racers_.size() == 1 && !best_;
+        for (auto& runs : waiting_) {
+            racers_.push_back({std::move(runs), {}});
             if (!is_alone) note(racers_.back(), racers_.back().runs->first_estimate());
         }
         sort_by_cost();
@@ -161,11 +165,9 @@ class Race {
                      [&](const LayoutCost& cost) { return cost.layout != report.layout; });
     }
 
-    const Prepared& prepared_;
     EncodeOptions options_;
     StageClock& clock_;
-    const Observer& observer_;
-    std::vector<const LayoutEntry*> entries_;
+    std::vector<std::unique_ptr<LayoutRuns>> waiting_;
     std::vector<Racer> racers_;
     std::vector<LayoutCost> costs_;
     std::optional<Result<Encoded>> best_;  // or the first error

@@ -283,7 +283,8 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
-    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, 0, density_of_cycles);
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle)
+        rounds(kCycle, cycle == 0 ? first_reach : 0, 0, density_of_cycles);
     if (effort == Effort::kFinal || effort == Effort::kRefine) impl_->keep_as_cycled();
     mends_folds = true;
     rounds(schedule.last, 0, kFullUnfoldings, kDensity);

@@ -66,7 +66,11 @@ FitFrame::FitFrame(const Mesh& mesh) {
 }
 
 FitReference::FitReference(Mesh input)
-    : mesh(in_space_order(std::move(input))), normals(face_normals(mesh)), tree(mesh), curve(boundary_curve(mesh)), curve_tree(curve) {}
+    : mesh(in_space_order(std::move(input))),
+      normals(face_normals(mesh)),
+      tree(mesh),
+      curve(boundary_curve(mesh)),
+      curve_tree(curve) {}
 
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
                    const std::vector<bool>& held, double front) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "encoder/base/result.h"
 #include "encoder/code/contest.h"
@@ -18,6 +19,9 @@ struct CodingRuns {
     // Makes images with these options, and estimates what their file costs. near: the quantizer of an earlier estimate.
     // The images wait for code().
     std::function<Result<Estimate>(const EncodeOptions& options, std::optional<double> near)> estimate;
+    // Makes the images of several options at once, which takes less time than one by one. They wait for estimate() and code(),
+    // which also tell what fails. May be empty.
+    std::function<void(const std::vector<EncodeOptions>& all)> make_ahead = {};
 };
 
 // Returns whether the run gives a better file for the target than the best one so far.

@@ -31,6 +31,11 @@ class Trials {
   public:
     explicit Trials(const CodingRuns& runs) : runs_(runs) {}
 
+    // Makes the images of trials that follow.
+    void make_ahead(const std::vector<EncodeOptions>& all) const {
+        if (runs_.make_ahead) runs_.make_ahead(all);
+    }
+
     void add(const EncodeOptions& options) {
         const auto estimate = runs_.estimate(options, near_);
         if (estimate.ok()) {
@@ -53,14 +58,6 @@ class Trials {
     std::optional<Error> first_error_;
 };
 
-EncodeOptions usual(const EncodeOptions& given, bool has_creases) {
-    EncodeOptions options = given;
-    options.creases = given.creases && has_creases;
-    const bool lossless = given.rate.kind == RateTarget::Kind::kLossless;
-    if (options.tiles == 0) options.tiles = lossless ? tiles_that_fill(options.samples) : kUsualTiles;
-    return options;
-}
-
 EncodeOptions in_number(EncodeOptions options, uint32_t tiles) {
     options.tiles = tiles;
     return options;
@@ -68,12 +65,16 @@ EncodeOptions in_number(EncodeOptions options, uint32_t tiles) {
 
 // With creases and without, if the surface has any.
 Result<Trials> tried_in_usual_number(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
-    EncodeOptions options = usual(given, has_creases);
+    const EncodeOptions options = usual_tiles(given, has_creases);
     Trials trials(runs);
-    trials.add(options);
-    if (options.creases) {
-        options.creases = false;
+    if (!options.creases) {
         trials.add(options);
+    } else {
+        EncodeOptions without = options;
+        without.creases = false;
+        trials.make_ahead({options, without});
+        trials.add(options);
+        trials.add(without);
     }
     if (trials.cheapest_first().empty()) return *trials.first_error();
     return trials;
@@ -84,11 +85,14 @@ void try_other_numbers(Trials& trials, const TriedTiles& usual) {
     const double bytes = bytes_at(usual.options.rate, usual.estimate.log_bytes);
     const bool is_dear = bytes > kDearTile * usual.options.tiles;
     const uint32_t likely = is_dear ? kMore : kFewer;
-    trials.add(in_number(usual.options, likely));
+    const EncodeOptions first = in_number(usual.options, likely);
+    const EncodeOptions second = in_number(usual.options, is_dear ? kFewer : kMore);
+    trials.make_ahead({first, second});
+    trials.add(first);
     const TriedTiles& best = trials.cheapest_first()[0];
     if (best.options.tiles == likely && best.estimate.log_bytes < usual.estimate.log_bytes - std::log1p(kClearGain))
         return;
-    trials.add(in_number(usual.options, is_dear ? kFewer : kMore));
+    trials.add(second);
 }
 
 // Without a search: tiles keep creases if that leads to a file.
@@ -116,6 +120,14 @@ uint32_t tiles_that_fill(uint64_t samples) {
     return best;
 }
 
+EncodeOptions usual_tiles(const EncodeOptions& given, bool has_creases) {
+    EncodeOptions options = given;
+    options.creases = given.creases && has_creases;
+    const bool lossless = given.rate.kind == RateTarget::Kind::kLossless;
+    if (options.tiles == 0) options.tiles = lossless ? tiles_that_fill(options.samples) : kUsualTiles;
+    return options;
+}
+
 Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
     GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
     return trials.cheapest_first();
@@ -126,7 +138,10 @@ Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOp
     if (given.tiles != 0 || !effort_of(given).all_counts) return trials.cheapest_first();
     const TriedTiles first = trials.cheapest_first()[0];
     if (first.options.creases) {
-        for (const uint32_t tiles : kOthersWithCreases) trials.add(in_number(first.options, tiles));
+        std::vector<EncodeOptions> others;
+        for (const uint32_t tiles : kOthersWithCreases) others.push_back(in_number(first.options, tiles));
+        trials.make_ahead(others);
+        for (const EncodeOptions& other : others) trials.add(other);
     } else {
         try_other_numbers(trials, first);
     }
@@ -135,7 +150,7 @@ Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOp
 
 Result<Encoded> best_of_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases,
                               bool is_brief_enough) {
-    if (!is_searched(options.rate)) return code_once(runs, usual(options, has_creases));
+    if (!is_searched(options.rate)) return code_once(runs, usual_tiles(options, has_creases));
     GIM_TRY(tried, try_tiles(runs, options, has_creases));
     auto best = runs.code(tried[0].options, {});
     if (is_brief_enough) return best;

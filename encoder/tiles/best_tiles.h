@@ -25,6 +25,9 @@ struct TriedTiles {
 // are searched for.
 Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
+// The options of the first of them: the usual number, and creases if there are any.
+EncodeOptions usual_tiles(const EncodeOptions& options, bool has_creases);
+
 // The same; goes on in other numbers if the options leave the number open.
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
