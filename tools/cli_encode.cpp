@@ -53,13 +53,15 @@ void add_image_options(CLI::App* sub, EncodeArguments& a) {
     static const std::map<std::string, Layout> layouts = {
         {"gim", Layout::kGim}, {"mcgim", Layout::kMcgim}, {"tiles", Layout::kTiles}, {"auto", Layout::kAuto}};
     a.command.options.layout = Layout::kAuto;
-    a.layout = sub->add_option("--layout", a.command.options.layout,
-                               "gim: one square for each component; mcgim: several charts in one rectangle; tiles: "
-                               "square tiles on a base mesh of quads; auto: tries gim and tiles and keeps the smaller "
-                               "file, or the better one for --bytes; with --lossless takes the layout that suits the "
-                               "shape. An option that only one layout has chooses it. Default: auto")
-                   ->transform(CLI::CheckedTransformer(layouts).description(""))
-                   ->type_name("gim|mcgim|tiles|auto");
+    a.layout =
+        sub->add_option("--layout", a.command.options.layout,
+                        "gim: one square for each component; mcgim: several charts in one rectangle; tiles: "
+                        "square tiles on a base mesh of quads; auto: tries gim and tiles and keeps the smaller "
+                        "file, or the better one for --bytes (at a --quality, the one that brief fits show to be "
+                        "smaller at the same PSNR); with --lossless takes the layout that suits the "
+                        "shape. An option that only one layout has chooses it. Default: auto")
+            ->transform(CLI::CheckedTransformer(layouts).description(""))
+            ->type_name("gim|mcgim|tiles|auto");
     a.size =
         sub->add_option(
                "--size", a.command.options.side,
