@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "encoder/base/parallel.h"
+#include "format/inline.h"
 
 namespace gim {
 
@@ -203,6 +204,17 @@ class Solver {
     std::vector<std::vector<float>> inverse_;
 };
 
+// Adds the products of n symmetric blocks (xx, xy, xz, yy, yz, zz) with the triples in x, y, z.
+GIM_VECTOR_CLONES void add_products(ptrdiff_t n, const float* xx, const float* xy, const float* xz, const float* yy,
+                                    const float* yz, const float* zz, const float* x, const float* y, const float* z,
+                                    float* __restrict ox, float* __restrict oy, float* __restrict oz) {
+    for (ptrdiff_t i = 0; i < n; ++i) {
+        ox[i] += xx[i] * x[i] + xy[i] * y[i] + xz[i] * z[i];
+        oy[i] += xy[i] * x[i] + yy[i] * y[i] + yz[i] * z[i];
+        oz[i] += xz[i] * x[i] + yz[i] * y[i] + zz[i] * z[i];
+    }
+}
+
 }  // namespace
 
 // Adds to out[begin..end) the product block[begin - block_shift ..) * in[begin + shift ..).
@@ -213,14 +225,8 @@ void StencilMatrix::accumulate(Kind kind, size_t begin, size_t end, ptrdiff_t bl
     const float* b[6];
     for (size_t k = 0; k < 6; ++k) b[k] = channel(kind, k) + base + block_shift;
     const float *x = in[0].data() + base + shift, *y = in[1].data() + base + shift, *z = in[2].data() + base + shift;
-    float* __restrict ox = out[0].data() + base;
-    float* __restrict oy = out[1].data() + base;
-    float* __restrict oz = out[2].data() + base;
-    for (ptrdiff_t i = 0; i < n; ++i) {
-        ox[i] += b[0][i] * x[i] + b[1][i] * y[i] + b[2][i] * z[i];
-        oy[i] += b[1][i] * x[i] + b[3][i] * y[i] + b[4][i] * z[i];
-        oz[i] += b[2][i] * x[i] + b[4][i] * y[i] + b[5][i] * z[i];
-    }
+    add_products(n, b[0], b[1], b[2], b[3], b[4], b[5], x, y, z, out[0].data() + base, out[1].data() + base,
+                 out[2].data() + base);
 }
 
 // The first of two samples stores the block between them. Each row gathers from itself and its two neighbours.
