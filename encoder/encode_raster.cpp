@@ -31,7 +31,7 @@ namespace {
 constexpr int kStepsPerOctave = 8;
 constexpr double kFloatTolerance = 1e-6;  // diagonals
 // Samples of a comparison: thousands of small images must not take as long as large ones.
-constexpr size_t kSamplesPerTriangle = 16, kFewestSamples = 20000;
+constexpr size_t kSamplesPerTriangle = 16, kFewestSamples = 20000, kMostSamples = 500000;
 
 using File = std::vector<uint8_t>;
 
@@ -107,7 +107,7 @@ class RasterRun {
     // Samples of the comparisons that decide and that are reported.
     uint32_t samples() const {
         const size_t wanted = kSamplesPerTriangle * reference_.mesh().triangles.size();
-        return static_cast<uint32_t>(std::clamp<size_t>(wanted, kFewestSamples, CompareOptions{}.samples));
+        return static_cast<uint32_t>(std::clamp<size_t>(wanted, kFewestSamples, kMostSamples));
     }
     Result<Comparison> compare(const File& file, uint32_t samples, bool defects) const {
         CompareOptions options;

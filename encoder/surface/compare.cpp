@@ -131,6 +131,12 @@ OneWay distance_to(const Side& from, const Side& to, const CompareOptions& optio
     return result;
 }
 
+// Small surfaces are known as well by fewer samples: those of 100,000 give the PSNR to .05 dB.
+uint32_t usual_samples(size_t faces) {
+    constexpr size_t kFewest = 100000, kMost = 500000, kEachFace = 4;
+    return static_cast<uint32_t>(std::clamp(kEachFace * faces, kFewest, kMost));
+}
+
 double p999_of_distance(const PairedSamples& pairs) {
     std::vector<double> distances;
     distances.reserve(pairs.found.size());
@@ -180,7 +186,9 @@ ReferenceSurface::ReferenceSurface(Mesh mesh, uint32_t threads)
       traits_(std::make_unique<Traits>()) {}
 ReferenceSurface::~ReferenceSurface() = default;
 
-Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOptions& options) const {
+Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOptions& asked) const {
+    CompareOptions options = asked;
+    if (options.samples == 0) options.samples = usual_samples(mesh_.triangles.size() + test.triangles.size());
     const auto no_area = [](const char* which) {
         return Error{Stage::kCompare,
                      "the " + std::string(which) + " mesh has no area: all its triangles are degenerate"};
@@ -221,7 +229,6 @@ Result<Comparison> ReferenceSurface::compare(const Mesh& test, const CompareOpti
 }
 
 Result<Comparison> compare(const TriangleMesh& reference, const TriangleMesh& test, const CompareOptions& options) {
-    if (options.samples == 0) return Error{Stage::kCompare, "the number of samples is 0; ask for at least 1"};
     GIM_TRY(mesh_a, checked_mesh(reference, "reference"));
     GIM_TRY(mesh_b, checked_mesh(test, "test"));
     const CompareFrame frame = choose_compare_frame(mesh_a, mesh_b);

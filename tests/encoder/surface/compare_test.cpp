@@ -142,6 +142,24 @@ TEST(Compare, ConcentricSpheresAreTheirRadiiApart) {
     EXPECT_NEAR(result.value().rms_to_reference, 0.1, 2e-3);
 }
 
+TEST(Compare, WhereTheNumberOfSamplesIsLeftOpenFacesDecide) {
+    const auto rms = [](const TriangleMesh& a, const TriangleMesh& b, uint32_t samples) {
+        CompareOptions options;
+        options.samples = samples;
+        const auto result = compare(a, b, options);
+        EXPECT_TRUE(result.ok());
+        return result.ok() ? result.value().rms_to_test : 0;
+    };
+    const TriangleMesh small = corpus::sphere(8), near_small = corpus::roughened(small, 0.01, 1);
+    EXPECT_EQ(rms(small, near_small, 0), rms(small, near_small, 100000));
+    const TriangleMesh middle = corpus::sphere(64), near_middle = corpus::roughened(middle, 0.01, 1);
+    const auto faces = static_cast<uint32_t>(middle.triangles.size() + near_middle.triangles.size());
+    ASSERT_GT(4 * faces, 100000u);
+    ASSERT_LT(4 * faces, 500000u);
+    EXPECT_EQ(rms(middle, near_middle, 0), rms(middle, near_middle, 4 * faces));
+    EXPECT_NEAR(rms(middle, near_middle, 0), rms(middle, near_middle, 500000), 0.01 * rms(middle, near_middle, 500000));
+}
+
 TEST(Compare, ThreadsAndRepetitionChangeNothing) {
     const TriangleMesh a = corpus::limbed_blob(24), b = corpus::roughened(a, 0.01, 1);
     CompareOptions options;
