@@ -80,6 +80,16 @@ uint32_t curve_at(const CreaseCurves& curves, const TileMap& map, const SurfaceP
     return curve;
 }
 
+// Returns the curve that all samples lie on, but for less than half of them that lie on none; else kNone. A vertex of a crease
+// that found no room on the border of its tiles (TileMap::stray) takes a few samples off it. Fits put them back on their rail.
+uint32_t curve_of_most(const std::vector<uint32_t>& curve_of_sample) {
+    const uint32_t curve = *std::min_element(curve_of_sample.begin(), curve_of_sample.end());
+    const auto on = static_cast<size_t>(std::count(curve_of_sample.begin(), curve_of_sample.end(), curve));
+    const auto off = static_cast<size_t>(std::count(curve_of_sample.begin(), curve_of_sample.end(), kNone));
+    if (curve == kNone || on + off < curve_of_sample.size() || on <= off) return kNone;
+    return curve;
+}
+
 }  // namespace
 
 CreaseRails crease_rails(const Mesh& dense, const std::vector<bool>& sharp, const TileMap& map,
@@ -99,11 +109,11 @@ CreaseRails crease_rails(const Mesh& dense, const std::vector<bool>& sharp, cons
     std::vector<uint32_t> ends;  // of edges on creases: vertices of the complex
     for (uint32_t e = 0; e < complex.edges; ++e) {
         const uint32_t h = complex.lower[e];
-        const uint32_t curve = curve_at(curves, map, points[samples.along(h, side / 2)]);
-        bool is_on = curve != kNone;
-        for (uint32_t t = 1; t < side && is_on; ++t)
-            is_on = curve_at(curves, map, points[samples.along(h, t)]) == curve;
-        if (!is_on) continue;
+        std::vector<uint32_t> curve_of_inner;
+        for (uint32_t t = 1; t < side; ++t)
+            curve_of_inner.push_back(curve_at(curves, map, points[samples.along(h, t)]));
+        const uint32_t curve = curve_of_most(curve_of_inner);
+        if (curve == kNone) continue;
         result.half_edge[h] = true;
         if (complex.mate[h] != kNoMate) result.half_edge[complex.mate[h]] = true;
         for (uint32_t t = 1; t < side; ++t) curve_of[samples.along(h, t)] = curve;
