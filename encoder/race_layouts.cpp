@@ -29,6 +29,9 @@ constexpr double kBriefExcess = 0.12;
 // same.
 constexpr double kBriefNoise = 0.02;
 
+// Images of larger surfaces are made one after the other: they take gigabytes.
+constexpr size_t kMostFacesAtOnce = 2000000;
+
 double cost_of(const Encoded& encoded) { return log_bytes(double(encoded.bytes.size()), encoded.report.error.psnr); }
 
 // The highest cost of brief fits that leaves a chance against a file.
@@ -41,7 +44,7 @@ bool may_race(const LayoutEntry& entry, const EncodeOptions& options) {
 class Race {
   public:
     Race(const Prepared& prepared, const EncodeOptions& options, StageClock& clock, const Observer& observer)
-        : options_(options), clock_(clock) {
+        : options_(options), clock_(clock), is_small_(prepared.mesh.triangles.size() <= kMostFacesAtOnce) {
         for (const LayoutEntry& entry : all_layouts()) {
             if (may_race(entry, options))
                 waiting_.push_back(std::make_unique<LayoutRuns>(entry, prepared, options, clock, observer));
@@ -74,8 +77,10 @@ class Race {
     // fit, by brief fits too.
     void set_the_pace() {
         if (waiting_.size() < 2) return;
-        clock_.begin(Stage::kParametrize);
-        for_each_at_once(waiting_.size(), clock_, [&](size_t i) { waiting_[i]->make_ahead(); });
+        if (is_small_) {
+            clock_.begin(Stage::kParametrize);
+            for_each_at_once(waiting_.size(), clock_, [&](size_t i) { waiting_[i]->make_ahead(); });
+        }
         while (racers_.empty() && !waiting_.empty()) {
             const auto estimate = waiting_.front()->estimate();
             if (estimate.ok()) {
@@ -167,6 +172,7 @@ class Race {
 
     EncodeOptions options_;
     StageClock& clock_;
+    const bool is_small_;
     std::vector<std::unique_ptr<LayoutRuns>> waiting_;
     std::vector<Racer> racers_;
     std::vector<LayoutCost> costs_;
