@@ -269,25 +269,23 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     int done = 0;
     const bool is_alone = impl_->rounds == 0 && effort != Effort::kSearch;
     const double first_reach = kFirstReach * double{units.quantizer} * double{units.step} * impl_->frame.scale;
-    bool mends_folds = false;  // what cycles mend, later rounds would undo
-    // The brief fit's one cycle is its last part too.
-    const double density_of_cycles = effort == Effort::kSearch ? kDensity : kDensityOfCycles;
-    // reach: how far the unfolding before a free round may move samples; before the last `full` of them, as far as it takes.
-    const auto rounds = [&](const Schedule::Part& part, double reach, int full, double density) {
+    // reach: how far the unfolding before a free round may move samples; before the last ones of all, as far as it takes.
+    // Cycles mend no folds, since later rounds would undo that.
+    const auto rounds = [&](const Schedule::Part& part, double reach, bool is_last) {
+        const int full = is_last ? kFullUnfoldings : 0;
+        const double density = is_last || effort == Effort::kSearch ? kDensity : kDensityOfCycles;
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
-            if (free == Free::kNormals) impl_->quantize(units, mends_folds);
+            if (free == Free::kNormals) impl_->quantize(units, is_last);
             if (free == Free::kAll) impl_->unfold(is_alone || k >= part.free - full ? kFarthest : reach);
             impl_->round(units, free, tangential_pull_of(effort), density);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();
-    for (int cycle = 0; cycle < schedule.cycles; ++cycle)
-        rounds(kCycle, cycle == 0 ? first_reach : 0, 0, density_of_cycles);
+    for (int cycle = 0; cycle < schedule.cycles; ++cycle) rounds(kCycle, cycle == 0 ? first_reach : 0, false);
     if (effort == Effort::kFinal || effort == Effort::kRefine) impl_->keep_as_cycled();
-    mends_folds = true;
-    rounds(schedule.last, 0, kFullUnfoldings, kDensity);
+    rounds(schedule.last, 0, true);
     return positions();
 }
 
