@@ -32,6 +32,18 @@ std::vector<float>& band_of(AnalysisLevel<float>& level, Orientation orientation
                                                    : level.diagonal;
 }
 
+Pyramid<float> zero_pyramid(uint32_t columns, uint32_t rows, uint32_t steps) {
+    Pyramid<float> zero{columns, rows, {}, std::vector<AnalysisLevel<float>>(steps)};
+    zero.base.resize(size_t{3} * zero.columns_at(0) * zero.rows_at(0));
+    for (uint32_t k = 0; k < steps; ++k) {
+        const uint32_t c = zero.columns_at(k + 1), r = zero.rows_at(k + 1);
+        zero.levels[k].horizontal.resize(size_t{3} * low_count(r) * high_count(c));
+        zero.levels[k].vertical.resize(size_t{3} * high_count(r) * low_count(c));
+        zero.levels[k].diagonal.resize(size_t{3} * high_count(r) * high_count(c));
+    }
+    return zero;
+}
+
 }  // namespace
 
 ResponseBlock DetailResponses::at(uint32_t depth, Orientation orientation, uint32_t row, uint32_t column) {
@@ -44,6 +56,7 @@ ResponseBlock DetailResponses::at(uint32_t depth, Orientation orientation, uint3
     const Key key{depth, static_cast<uint32_t>(orientation),
                   small_place(row, count(rows_, high_row), count(rows, high_row)),
                   small_place(column, count(columns_, high_column), count(columns, high_column))};
+    const std::lock_guard lock(*guards_known_);
     auto found = known_.find(key);
     if (found == known_.end()) found = known_.emplace(key, compute(key, columns, rows)).first;
     const Kept& kept = found->second;
@@ -54,8 +67,7 @@ ResponseBlock DetailResponses::at(uint32_t depth, Orientation orientation, uint3
 
 DetailResponses::Kept DetailResponses::compute(const Key& key, uint32_t columns, uint32_t rows) const {
     // The bands of the small image, all zero but for the detail.
-    Pyramid<float> pyramid =
-        analyse<Irreversible97>(std::vector<float>(size_t{3} * columns * rows), columns, rows, key.depth);
+    Pyramid<float> pyramid = zero_pyramid(columns, rows, key.depth);
     const auto orientation = static_cast<Orientation>(key.orientation);
     const uint32_t band_columns =
         orientation == Orientation::kVertical ? low_count(pyramid.columns_at(1)) : high_count(pyramid.columns_at(1));

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "format/band.h"
@@ -26,7 +28,7 @@ class DetailResponses {
 
     // Returns the response of the detail at (row, column) of a band. depth: 1 for the finest. Leaves out what is less
     // than `least` of the largest weight. The pointer stays valid. The first call for a kind of place costs a synthesis
-    // of a small image.
+    // of a small image. Several threads may call it at once.
     ResponseBlock at(uint32_t depth, Orientation orientation, uint32_t row, uint32_t column);
 
   private:
@@ -44,6 +46,7 @@ class DetailResponses {
     uint32_t columns_, rows_;
     bool has_rim_;
     std::map<Key, Kept> known_;
+    std::unique_ptr<std::mutex> guards_known_ = std::make_unique<std::mutex>();
 };
 
 }  // namespace gim

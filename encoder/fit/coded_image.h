@@ -42,6 +42,8 @@ class CodedImage {
     virtual const Units& units() const = 0;
     // Decodes the integers as they are.
     virtual Levels decode() const = 0;
+    // Decodes them as if the component of a detail had changed by `by`. Costs a copy of the integers more.
+    virtual Levels decode_changed(const PlaceInPart& place, uint32_t component, int32_t by) const = 0;
     // Returns the samples of the whole image with closed seams: interleaved triples, in units.
     virtual std::vector<float> samples(const Levels& levels) const = 0;
     virtual DetailFrame frame(const Levels& levels, const PlaceInPart& place) const = 0;
@@ -57,8 +59,8 @@ class CodedImage {
     // Returns the place whose integers the coder takes: a copy's source, else the place itself.
     virtual PlaceInPart source_of(const PlaceInPart& place) const = 0;
     // Returns which samples move if the detail changes, together with its copies, and how far. Weights of a sample that
-    // is named twice add up. The reference holds until the next call.
-    virtual const WeightedSamples& moved_by(const PlaceInPart& source) = 0;
+    // is named twice add up. Several threads may call it at once.
+    virtual WeightedSamples moved_by(const PlaceInPart& source) const = 0;
 };
 
 // Returns samples in units as positions in the frame.

@@ -112,6 +112,7 @@ std::vector<Pull> Fitter::pulls_from_reference(const ImageSurface& image, double
 
 std::vector<Pull> Fitter::pulls_from_image(const ImageSurface& image, double density, uint64_t seed) {
     const auto per_face = static_cast<size_t>(std::max(1.0, std::round(0.5 * density)));
+    const bool skips_half = density < 1;  // of the faces: one of each cell
     nearest_reference_face_.assign(face_hint_.size(), kNone);
     std::vector<Pull> pulls(per_face * image.areas.size());
     parallel_blocks(image.areas.size(), 2048, 0, [&](size_t, size_t begin, size_t end) {
@@ -119,6 +120,10 @@ std::vector<Pull> Fitter::pulls_from_image(const ImageSurface& image, double den
             const Triangle& t = image.mesh.triangles[f];
             if (touches(t, held_)) continue;
             uint32_t hint = face_hint_[image.slot[f]];
+            if (skips_half && ((mix_bits(seed ^ (image.slot[f] / 2)) ^ image.slot[f]) & 1)) {
+                nearest_reference_face_[image.slot[f]] = hint;
+                continue;
+            }
             for (size_t k = 0; k < per_face; ++k) {
                 Pull& pull = pulls[per_face * f + k];
                 const uint64_t bits = mix_bits(mix_bits(seed) + per_face * f + k);
@@ -137,7 +142,7 @@ std::vector<Pull> Fitter::pulls_from_image(const ImageSurface& image, double den
                 pull.residual = at.point - point;
                 const Vec3& normal = reference_.normals[at.triangle];
                 pull.normal = is_inside(at.barycentric) ? normal : direction_or(pull.residual, normal);
-                pull.strength = image.areas[f] / mean_area_ / static_cast<double>(per_face);
+                pull.strength = (skips_half ? 2 : 1) * image.areas[f] / mean_area_ / static_cast<double>(per_face);
             }
         }
     });

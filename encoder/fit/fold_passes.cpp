@@ -1,50 +1,28 @@
 #include "encoder/fit/fold_passes.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 
-#include "encoder/base/parallel.h"
-#include "encoder/code/coefficient_prices.h"
-#include "encoder/fit/detail_reach.h"
-#include "encoder/fit/image_surface.h"
+#include "encoder/fit/fold_changes.h"
 
 namespace gim {
 
 namespace {
 
-// Cosine below which a face counts as folded. At creases a good face may stand across the nearest one.
-constexpr double kSteep = 0.03;
-// A bit lowers the squared distance, in squared steps, by the inverse of this at high rates (fit_coded.cpp).
-constexpr double kBitsPerDistance = 8.7;
-constexpr double kLeastGain = 4;       // bits
-constexpr double kMostSlope = 2;       // of a detail's response at depth 1, between neighbours; generous
 constexpr uint32_t kDeepest = 3;       // depth of the coarsest details that are changed without decoding again
 constexpr uint32_t kDeepestTried = 5;  // depth of the coarsest details that are tried
+constexpr uint32_t kApart = 4;         // of cells that are mended at once
 constexpr uint32_t kCluster = 3;       // reach of a cluster of folded cells
 constexpr size_t kFewest = 2;          // folded cells of a cluster that is worth a coarser detail
 constexpr size_t kTrials = 8;          // changes tried for a cluster
+constexpr size_t kTrialsAtOnce = 2;
 constexpr double kMostFolded = 0.03;   // part of the cells; where more seem folded, sheets lie on each other
-constexpr double kStill = 1e-8;        // squared shift, in squared steps, of a sample that does not move
-constexpr double kUnsuspicious = 0.7;  // cosine above which a stale reference face is good enough
-
-struct Change {
-    PlaceInPart place;
-    uint32_t component = 0;
-    int32_t by = 0;
-    Vec3 shift = Vec3::Zero();  // of a sample of weight 1, in the frame
-    double cost = 0;            // bits
-};
-
-// How much farther from the reference the samples get, in bits, if those of weight 1 shift by s: s b + s A s.
-struct DistanceCost {
-    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-    Vec3 b = Vec3::Zero();
-
-    double of(const Vec3& shift) const { return shift.dot(b + a * shift); }
-};
 
 }  // namespace
 
@@ -53,59 +31,49 @@ class FoldPass {
     FoldPass(FoldPasses& passes, CodedImage& image, const RepairEffort& effort)
         : r_(passes),
           image_(image),
-          effort_(effort),
-          unit_(double{image.units().step} * passes.frame_.scale),
-          quantizer_(double{image.units().quantizer}),
-          prices_(image.bands()),
-          reaches_(passes.gluing_),
-          levels_(image.decode()),
-          x_(positions(levels_)),
-          sample_off_(passes.gluing_.sample_count(), kNone),
-          margin_(passes.gluing_.kind.size(), 0) {}
+          state_({passes.gluing_, passes.reference_, passes.frame_, passes.front_}, image, effort, passes.nearest_),
+          finders_([this] { return FoldChanges(state_); }) {}
 
     // Changes fine details. Returns the number of changes.
     size_t run() {
+        if (are_too_many()) return 0;
         size_t changes = 0;
-        const std::vector<uint32_t> cells = steep_cells();
-        if (are_too_many(cells)) return 0;
-        for (const uint32_t cell : cells) {
-            if (r_.is_stuck_[cell] || cost_of_cell(cell) == 0) continue;
-            const std::vector<Change> best = best_changes(cell, 1, kDeepest, 1);
-            r_.is_stuck_[cell] = best.empty();
-            if (best.empty()) continue;
-            apply(best[0]);
-            ++changes;
+        std::vector<uint32_t> waiting = state_.steep_cells();
+        while (true) {
+            std::erase_if(waiting, [&](uint32_t cell) { return r_.is_stuck_[cell] || state_.cost(cell) == 0; });
+            if (waiting.empty()) return changes;
+            const std::vector<uint32_t> cells = cells_apart(waiting);
+            const auto found = best_around(cells, 1, kDeepest, 1);
+            std::vector<uint8_t> is_done(r_.gluing_.kind.size(), 0);
+            for (size_t i = 0; i < cells.size(); ++i) {
+                is_done[cells[i]] = found[i].empty() || apply_if_it_still_pays(found[i][0]);
+                r_.is_stuck_[cells[i]] = found[i].empty();
+                changes += is_done[cells[i]] && !found[i].empty();
+            }
+            std::erase_if(waiting, [&](uint32_t cell) { return is_done[cell]; });
         }
-        return changes;
     }
 
     // Tries coarser details where several neighbours are folded. Decodes for each trial, because the frames of finer
     // details turn with a coarser one. Returns the number of changes.
     size_t run_coarse() {
-        const std::vector<uint32_t> cells = steep_cells();
-        if (are_too_many(cells)) return 0;
-        std::vector<uint8_t> is_done(r_.gluing_.kind.size(), 0), is_steep(is_done.size(), 0);
-        for (const uint32_t cell : cells) is_steep[cell] = 1;
+        if (are_too_many()) return 0;
+        const std::vector<uint32_t> cells = clusters();
+        const auto found = best_around(cells, kDeepest + 1, kDeepestTried, kTrials);
+        std::vector<Waiting> waiting;
+        for (size_t i = 0; i < cells.size(); ++i) waiting.push_back({cells[i], found[i]});
         size_t changes = 0;
-        for (const uint32_t cell : cells) {
-            if (is_done[cell] || cost_of_cell(cell) == 0) continue;
-            size_t folded = 0;
-            for_each_cell_near(cell, kCluster, [&](uint32_t other) { folded += is_steep[other]; });
-            if (folded < kFewest) continue;
-            for_each_cell_near(cell, 2 * kCluster, [&](uint32_t other) { is_done[other] = 1; });
-            const std::vector<Change> best = best_changes(cell, kDeepest + 1, kDeepestTried, kTrials);
-            changes += std::any_of(best.begin(), best.end(), [&](const Change& c) { return apply_if_it_pays(c); });
+        while (true) {
+            std::erase_if(waiting, [&](const Waiting& w) { return w.changes.empty() || state_.cost(w.cell) == 0; });
+            if (waiting.empty()) return changes;
+            changes += apply_those_that_pay(waiting);
         }
-        return changes;
     }
 
   private:
-    std::vector<Vec3> positions(const CodedImage::Levels& levels) const {
-        return positions_of(image_.samples(levels), image_.units(), r_.frame_);
-    }
-
-    bool are_too_many(const std::vector<uint32_t>& cells) const {
-        return static_cast<double>(cells.size()) > kMostFolded * static_cast<double>(r_.gluing_.kind.size());
+    bool are_too_many() const {
+        return static_cast<double>(state_.steep_cells().size()) >
+               kMostFolded * static_cast<double>(r_.gluing_.kind.size());
     }
 
     template <class Body>
@@ -117,288 +85,109 @@ class FoldPass {
         }
     }
 
-    Vec3 normal_of(const Triangle& t) const {
-        const Vec3& a = x_[t[0]];
-        return r_.front_ * direction_or((x_[t[1]] - a).cross(x_[t[2]] - a), Vec3::Zero());
-    }
-
-    double cosine(uint32_t slot, const Triangle& t) {
-        uint32_t& face = r_.nearest_[slot];
-        const Vec3 normal = normal_of(t);
-        if (face != kNone) {
-            const double stale = normal.dot(r_.reference_.normals[face]);
-            if (stale > kUnsuspicious) return stale;
+    // Returns cells none of which is near another one.
+    std::vector<uint32_t> cells_apart(const std::vector<uint32_t>& cells) const {
+        std::vector<uint8_t> is_near(r_.gluing_.kind.size(), 0);
+        std::vector<uint32_t> apart;
+        for (const uint32_t cell : cells) {
+            if (is_near[cell]) continue;
+            apart.push_back(cell);
+            for_each_cell_near(cell, kApart, [&](uint32_t other) { is_near[other] = 1; });
         }
-        face = r_.reference_.tree.find((x_[t[0]] + x_[t[1]] + x_[t[2]]) / 3, face).triangle;
-        return normal.dot(r_.reference_.normals[face]);
+        return apart;
     }
 
-    std::vector<uint32_t> steep_cells() {
-        std::vector<uint8_t> is_steep(r_.gluing_.kind.size());
-        parallel_blocks(is_steep.size(), 1024, 0, [&](size_t, size_t begin, size_t end) {
-            for (size_t cell = begin; cell < end; ++cell) {
-                const auto faces = split_cell(x_, r_.gluing_, static_cast<uint32_t>(cell));
-                double least = 1;
-                for (size_t half = 0; half < 2; ++half) {
-                    if (faces[half] == kNoFace) continue;
-                    const auto slot = static_cast<uint32_t>(2 * cell + half);
-                    const double c = cosine(slot, faces[half]);
-                    least = std::min(least, c);
-                    if (c < kSteep) is_steep[cell] = 1;
-                }
-                margin_[cell] = margin_of(faces, least);
-            }
-        });
+    // Returns a cell of each cluster of folded cells.
+    std::vector<uint32_t> clusters() const {
+        std::vector<uint8_t> is_done(r_.gluing_.kind.size(), 0), is_steep(is_done.size(), 0);
+        for (const uint32_t cell : state_.steep_cells()) is_steep[cell] = 1;
         std::vector<uint32_t> cells;
-        for (uint32_t cell = 0; cell < is_steep.size(); ++cell) {
-            if (is_steep[cell]) cells.push_back(cell);
+        for (const uint32_t cell : state_.steep_cells()) {
+            if (is_done[cell] || state_.cost(cell) == 0) continue;
+            size_t folded = 0;
+            for_each_cell_near(cell, kCluster, [&](uint32_t other) { folded += is_steep[other]; });
+            if (folded < kFewest) continue;
+            for_each_cell_near(cell, 2 * kCluster, [&](uint32_t other) { is_done[other] = 1; });
+            cells.push_back(cell);
         }
         return cells;
     }
 
-    // Returns how far a corner of the cell may move against the others before a face can turn steep.
-    double margin_of(const std::array<Triangle, 2>& faces, double least_cosine) const {
-        if (least_cosine < kUnsuspicious) return 0;
-        double margin = std::numeric_limits<double>::infinity();
-        for (const Triangle& t : faces) {
-            if (t == kNoFace) continue;
-            const Vec3 a = x_[t[1]] - x_[t[0]], b = x_[t[2]] - x_[t[0]];
-            const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
-            if (longest > 0) margin = std::min(margin, a.cross(b).norm() / std::sqrt(longest));
-        }
-        return margin;
+    std::vector<std::vector<DetailChange>> best_around(const std::vector<uint32_t>& cells, uint32_t from_depth,
+                                                       uint32_t to_depth, size_t most) {
+        std::vector<std::vector<DetailChange>> found(cells.size());
+        tbb::parallel_for(size_t{0}, cells.size(), [&](size_t i) {
+            found[i] = finders_.local().best_around(cells[i], from_depth, to_depth, most);
+        });
+        return found;
     }
 
-    // Uses the reference faces that were nearest when the pass began.
-    double cost_of_cell(uint32_t cell) const {
-        const auto faces = split_cell(x_, r_.gluing_, cell);
-        double cost = 0;
-        for (size_t half = 0; half < 2; ++half) {
-            if (faces[half] == kNoFace) continue;
-            const uint32_t slot = 2 * cell + static_cast<uint32_t>(half);
-            const uint32_t face = r_.nearest_[slot] != kNone ? r_.nearest_[slot] : r_.nearest_[slot ^ 1];
-            if (face == kNone) continue;
-            const double c = normal_of(faces[half]).dot(r_.reference_.normals[face]);
-            if (c < kSteep) cost += effort_.fold + effort_.turn * (kSteep - c);
-        }
-        return cost;
-    }
-
-    struct Off {
-        Vec3 normal = Vec3::Zero();
-        double distance = 0;  // along the normal
-    };
-    const Off& off_of(uint32_t v) {
-        if (sample_off_[v] == kNone) {
-            const ClosestPoint at = r_.reference_.tree.find(x_[v], offs_.empty() ? kNone : last_face_);
-            last_face_ = at.triangle;
-            const Vec3& normal = r_.reference_.normals[at.triangle];
-            sample_off_[v] = static_cast<uint32_t>(offs_.size());
-            offs_.push_back({normal, (x_[v] - at.point).dot(normal)});
-        }
-        return offs_[sample_off_[v]];
-    }
-
-    // The reference counts as flat around a sample until the pass ends.
-    void shift_off(uint32_t v, const Vec3& shift) {
-        if (sample_off_[v] == kNone) return;
-        Off& off = offs_[sample_off_[v]];
-        off.distance += shift.dot(off.normal);
-    }
-
-    DistanceCost distance_cost(const DetailReach& reach) {
-        const double step = unit_ * quantizer_, scale = kBitsPerDistance / (step * step);
-        DistanceCost cost;
-        for (const auto& [v, weight] : reach.samples) {
-            const Off& off = off_of(v);
-            const Vec3 normal = double{weight} * off.normal;
-            cost.a.noalias() += normal * normal.transpose();
-            cost.b += 2 * off.distance * normal;
-        }
-        cost.a *= scale;
-        cost.b *= scale;
-        return cost;
-    }
-
-    void move(const WeightedSamples& samples, const Vec3& shift) {
-        for (const auto& [v, weight] : samples) x_[v] += double{weight} * shift;
-    }
-
-    const DetailReach& reach_of(const PlaceInPart& p) {
-        // Neighbours move against each other by so much at most.
-        const double most = kMostSlope * unit_ * double{tangential_step_at(p)} / (1u << (p.depth - 1));
-        return reaches_.find(image_.moved_by(p), margin_, most);
-    }
-
-    float tangential_step_at(const PlaceInPart& p) const {
-        const DetailSteps steps = image_.steps_at(p.depth);
-        return steps.of(p.orientation) * std::max(1.0f, steps.tangential);
-    }
-
-    // Returns the best changes of details of these depths, best first. Each is the best of its detail.
-    std::vector<Change> best_changes(uint32_t cell, uint32_t from_depth, uint32_t to_depth, size_t most) {
-        const std::vector<CellInPart> parts = image_.parts_at(cell);
-        std::vector<Change> best;
-        std::vector<PlaceInPart> tried;  // where parts share details
-        for (const CellInPart& at : parts) {
-            for (uint32_t depth = from_depth; depth <= std::min(to_depth, image_.depths(at.part)); ++depth) {
-                for_each_place_near(at, depth, [&](const PlaceInPart& place) {
-                    const PlaceInPart source = image_.source_of(place);
-                    if (parts.size() > 1) {
-                        if (std::find(tried.begin(), tried.end(), source) != tried.end()) return;
-                        tried.push_back(source);
-                    }
-                    const double limit = best.size() == most ? best.back().cost : -kLeastGain;
-                    if (const auto change = best_of_detail(source, limit)) insert(best, *change, most);
-                });
-            }
-        }
-        return best;
-    }
-
-    // Calls body(place) for the details around a cell, band by band.
-    template <class Body>
-    void for_each_place_near(const CellInPart& at, uint32_t depth, const Body& body) {
-        for (const auto orientation : {Orientation::kHorizontal, Orientation::kVertical, Orientation::kDiagonal}) {
-            PlaceInPart place{at.part, depth, orientation, 0, 0};
-            const Band band = image_.band(place);
-            const double size = 1u << depth, reach = depth == 1 ? 1.3 : 1.0;
-            const double middle_row = at.row / size - (orientation == Orientation::kHorizontal ? 0 : 0.5);
-            const double middle_column = at.column / size - (orientation == Orientation::kVertical ? 0 : 0.5);
-            const auto first = [&](double middle) {
-                return static_cast<uint32_t>(std::max(0.0, std::ceil(middle - reach)));
-            };
-            const auto last = [&](double middle, uint32_t count) {
-                return std::min(static_cast<int64_t>(std::floor(middle + reach)), int64_t{count} - 1);
-            };
-            for (place.row = first(middle_row); place.row <= last(middle_row, band.rows); ++place.row) {
-                for (place.column = first(middle_column); place.column <= last(middle_column, band.columns);
-                     ++place.column)
-                    body(place);
-            }
-        }
-    }
-
-    static void insert(std::vector<Change>& best, const Change& change, size_t most) {
-        const auto at = std::find_if(best.begin(), best.end(), [&](const Change& c) { return change.cost < c.cost; });
-        best.insert(at, change);
-        if (best.size() > most) best.pop_back();
-    }
-
-    // Returns the detail's best change if it costs less than `limit`.
-    std::optional<Change> best_of_detail(const PlaceInPart& p, double limit) {
-        std::optional<Change> best;
-        const DetailReach& reach = reach_of(p);
-        double before = 0;
-        for (const uint32_t cell : reach.cells) before += cost_of_cell(cell);
-        if (before < kLeastGain) return best;
-        const DetailSteps steps = image_.steps_at(p.depth);
-        const DetailFrame frame = image_.frame(levels_, p);
-        float step[3];
-        steps_in(frame, steps, p.orientation, step);
-        const Band integers = image_.band(p);
-        std::optional<DistanceCost> distance;
-        for (uint32_t k = 0; k < 3; ++k) {
-            const int32_t now = integers.row(p.row)[3 * p.column + k];
-            for (const int32_t by : {-1, 1}) {
-                Change change{p, k, by, Vec3::Zero(), 0};
-                const double length = unit_ * double{dequantize(now + by, step[k]) - dequantize(now, step[k])};
-                for (int i = 0; i < 3; ++i) change.shift[i] = length * double{frame.axis[k][i]};
-                change.cost = prices_.bits_of_change(integers, p.row, p.column, k, by) - before;
-                if (change.cost > limit) continue;
-                if (!distance) distance = distance_cost(reach);
-                change.cost += distance->of(change.shift);
-                if (change.cost > limit) continue;
-                move(reach.corners, change.shift);
-                for (const uint32_t cell : reach.cells) change.cost += cost_of_cell(cell);
-                move(reach.corners, -change.shift);
-                if (change.cost < limit) {
-                    limit = change.cost;
-                    best = change;
-                }
-            }
-        }
-        return best;
-    }
-
-    // Makes the change and decodes again. Takes it back if it does not pay. Returns whether it stays.
-    bool apply_if_it_pays(const Change& change) {
-        const PlaceInPart& p = change.place;
-        const Band band = image_.band(p);
-        int32_t& integer = band.row(p.row)[3 * p.column + change.component];
-        const double bits = prices_.bits_of_change(band, p.row, p.column, change.component, change.by);
-        integer += change.by;
-        CodedImage::Levels levels = image_.decode();
-        std::vector<Vec3> x = positions(levels);
-        std::vector<uint32_t> moved;
-        const std::vector<uint32_t> nearest_before = r_.nearest_;
-        if (bits + cost_of_move(x, moved) >= -kLeastGain) {
-            integer -= change.by;
-            r_.nearest_ = nearest_before;
-            return false;
-        }
-        for (uint32_t v = 0; v < x.size(); ++v) shift_off(v, x[v] - x_[v]);
-        levels_ = std::move(levels);
-        x_ = std::move(x);
-        for (const uint32_t cell : moved) r_.is_stuck_[cell] = 0;
+    // Returns whether it does. It may not, if another change came first.
+    bool apply_if_it_still_pays(const DetailChange& change) {
+        if (finders_.local().cost_of(change) > -kLeastFoldGain) return false;
+        change_integer(change);
+        const WeightedSamples samples = finders_.local().reach_of(change.place).samples;
+        for (const uint32_t cell : state_.move(samples, change.shift)) r_.is_stuck_[cell] = 0;
         return true;
     }
 
-    // What it costs, in distance and folds, to move the samples to x. Adds the cells that move.
-    double cost_of_move(std::vector<Vec3>& x, std::vector<uint32_t>& cells) {
-        const double step = unit_ * quantizer_;
-        double sum = 0;
-        std::vector<uint8_t> is_known(r_.gluing_.kind.size(), 0);
-        for (uint32_t v = 0; v < x.size(); ++v) {
-            const Vec3 shift = x[v] - x_[v];
-            if (!(shift.squaredNorm() > kStill * step * step) || !r_.gluing_.is_defined(v)) continue;
-            const Off& off = off_of(v);
-            const double by = shift.dot(off.normal);
-            sum += by * (2 * off.distance + by);
-            for_each_cell_at(r_.gluing_, v, [&](uint32_t cell) {
-                if (is_known[cell] || r_.gluing_.kind[cell] == CellKind::kEmpty) return;
-                is_known[cell] = 1;
-                cells.push_back(cell);
-            });
-        }
-        double cost = kBitsPerDistance * sum / (step * step);
-        for (const uint32_t cell : cells) cost -= cost_of_cell(cell);
-        x_.swap(x);
-        for (const uint32_t cell : cells) {
-            const auto faces = split_cell(x_, r_.gluing_, cell);
-            for (uint32_t half = 0; half < 2; ++half) {
-                if (faces[half] != kNoFace) cosine(2 * cell + half, faces[half]);
-            }
-            cost += cost_of_cell(cell);
-        }
-        x_.swap(x);
-        return cost;
-    }
-
-    void apply(const Change& change) {
+    void change_integer(const DetailChange& change) {
         const PlaceInPart& p = change.place;
         image_.band(p).row(p.row)[3 * p.column + change.component] += change.by;
-        const DetailReach& reach = reach_of(p);
-        move(reach.samples, change.shift);
-        for (const auto& [v, weight] : reach.samples) {
-            shift_off(v, double{weight} * change.shift);
-            for_each_cell_at(r_.gluing_, v, [&](uint32_t cell) { r_.is_stuck_[cell] = 0; });
+    }
+
+    // A cell whose cluster waits for a change, and the changes to try, best first.
+    struct Waiting {
+        uint32_t cell;
+        std::span<const DetailChange> changes;
+    };
+    struct Trial {
+        FoldState::Move move;
+        double cost = 0;
+    };
+
+    Trial trial_of(const DetailChange& change) {
+        const PlaceInPart& p = change.place;
+        Trial trial{state_.move_to(image_.decode_changed(p, change.component, change.by)), 0};
+        trial.cost = state_.prices().bits_of_change(image_.band(p), p.row, p.column, change.component, change.by) +
+                     trial.move.fold_cost + finders_.local().distance_cost_of(trial.move.x, trial.move.samples);
+        return trial;
+    }
+
+    // Tries the next change of the first ones that wait, at once. Applies those that pay, but of two that mend or fold the same
+    // cells only the first; the other one is tried again. Returns how many it applies.
+    size_t apply_those_that_pay(std::vector<Waiting>& waiting) {
+        std::array<Trial, kTrialsAtOnce> trials;
+        const size_t count = std::min(kTrialsAtOnce, waiting.size());
+        tbb::parallel_for(size_t{0}, count, [&](size_t i) { trials[i] = trial_of(waiting[i].changes[0]); });
+        std::vector<bool> is_taken(r_.gluing_.kind.size(), false);
+        std::vector<Trial*> applied;
+        for (size_t i = 0; i < count; ++i) {
+            Trial& trial = trials[i];
+            const std::vector<uint32_t>& cells = trial.move.refolded;
+            const bool pays = trial.cost < -kLeastFoldGain;
+            if (pays && std::any_of(cells.begin(), cells.end(), [&](uint32_t cell) { return is_taken[cell]; })) continue;
+            if (pays) {
+                change_integer(waiting[i].changes[0]);
+                applied.push_back(&trial);
+                for (const uint32_t cell : cells) is_taken[cell] = true;
+            }
+            waiting[i].changes = pays ? std::span<const DetailChange>{} : waiting[i].changes.subspan(1);
         }
+        if (applied.size() == 1) take(std::move(applied[0]->move));
+        if (applied.size() > 1) take(state_.move_to(image_.decode()));
+        return applied.size();
+    }
+
+    void take(FoldState::Move move) {
+        for (const uint32_t cell : move.cells) r_.is_stuck_[cell] = 0;
+        state_.take(std::move(move));
     }
 
     FoldPasses& r_;
     CodedImage& image_;
-    RepairEffort effort_;
-    double unit_;  // length of a unit in the frame
-    double quantizer_;
-    CoefficientPrices prices_;
-    ReachFinder reaches_;
-    CodedImage::Levels levels_;
-    std::vector<Vec3> x_;
-    std::vector<uint32_t> sample_off_;
-    std::vector<Off> offs_;
-    uint32_t last_face_ = kNone;
-    std::vector<double> margin_;  // per cell
+    FoldState state_;
+    tbb::enumerable_thread_specific<FoldChanges> finders_;
 };
 
 FoldPasses::FoldPasses(const GridGluing& gluing, const FitReference& reference, const FitFrame& frame, double front)

@@ -5,9 +5,10 @@
 // distance. Rate-distortion optimised quantization does the same for distance alone: Ramchandran, Vetterli.
 // Rate-Distortion Optimal Fast Thresholding with Complete JPEG/MPEG Decoder Compatibility. 1994.
 //
-// Each pass decodes the image, visits its folded cells in order, and applies the best change at each at once. It
-// assumes that the frames of finer details stay. The next pass sees what the decoder really does. Where several
-// neighbours are folded, one pass also tries coarser details. It decodes for each of these, since frames turn with them.
+// Each pass decodes the image. It finds the best change at folded cells that are not near each other, several at once, and
+// applies them in order, as far as they still pay. Then it goes on with the cells between. It assumes that the frames of
+// finer details stay. The next pass sees what the decoder really does. Where several neighbours are folded, one pass also
+// tries coarser details. It decodes for each of these, since frames turn with them.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +16,11 @@
 
 #include "encoder/fit/coded_image.h"
 #include "encoder/fit/fitter.h"
+#include "encoder/fit/fold_state.h"
 #include "encoder/image/gluing.h"
 
 namespace gim {
 
-// What folds are worth, and the most passes.
-struct RepairEffort {
-    int passes;
-    double fold;  // bits that a folded face is worth at least
-    double turn;  // bits for each unit of its cosine
-};
 // The last repair of a file, and those between the rounds of a fit. The latter must be cheap: what they spend on a fold,
 // the next rounds undo. With the last ones' price, files take 3 to 5 % more bytes and have more folds.
 inline constexpr RepairEffort kLastRepair = {8, 15, 10}, kRepairBetween = {1, 2, 5};

@@ -4,6 +4,14 @@
 
 namespace gim {
 
+namespace {
+
+Band band_in(Pyramid<int32_t>& pyramid, const PlaceInPart& place) {
+    return bands_of(pyramid, pyramid.steps() - place.depth).of(place.orientation);
+}
+
+}  // namespace
+
 CodedImage::Levels ImageParts::decode(std::span<const Pyramid<int32_t>> bands, const Units& units) const {
     CodedImage::Levels levels;
     for (size_t p = 0; p < parts.size(); ++p)
@@ -58,9 +66,12 @@ DetailFrame PartsImage::frame(const Levels& levels, const PlaceInPart& place) co
     return field.at(place.orientation, place.row, place.column);
 }
 
-Band PartsImage::band(const PlaceInPart& place) {
-    Pyramid<int32_t>& pyramid = bands_[place.part];
-    return bands_of(pyramid, pyramid.steps() - place.depth).of(place.orientation);
+Band PartsImage::band(const PlaceInPart& place) { return band_in(bands_[place.part], place); }
+
+CodedImage::Levels PartsImage::decode_changed(const PlaceInPart& place, uint32_t component, int32_t by) const {
+    std::vector<Pyramid<int32_t>> changed(bands_.begin(), bands_.end());
+    band_in(changed[place.part], place).row(place.row)[3 * place.column + component] += by;
+    return parts_.decode(changed, units_);
 }
 
 std::vector<CellInPart> PartsImage::parts_at(uint32_t cell) const {
@@ -82,24 +93,24 @@ PlaceInPart PartsImage::source_of(const PlaceInPart& place) const {
     return {place.part, place.depth, from.orientation, from.row, from.column};
 }
 
-const WeightedSamples& PartsImage::moved_by(const PlaceInPart& source) {
-    moved_.clear();
+WeightedSamples PartsImage::moved_by(const PlaceInPart& source) const {
+    WeightedSamples moved;
     const CodedPart& part = parts_.parts[source.part];
     DetailResponses& responses = responses_[source.part];
-    add_block(part, responses.at(source.depth, source.orientation, source.row, source.column));
+    add_block(part, responses.at(source.depth, source.orientation, source.row, source.column), moved);
     for (const auto& [from, copy] : depths_[source.part][source.depth - 1].copies) {
         if (from.orientation == source.orientation && from.row == source.row && from.column == source.column)
-            add_block(part, responses.at(source.depth, copy.orientation, copy.row, copy.column));
+            add_block(part, responses.at(source.depth, copy.orientation, copy.row, copy.column), moved);
     }
-    return moved_;
+    return moved;
 }
 
-void PartsImage::add_block(const CodedPart& part, const ResponseBlock& block) {
+void PartsImage::add_block(const CodedPart& part, const ResponseBlock& block, WeightedSamples& moved) const {
     const float* weight = block.weights;
     for (uint32_t row = block.row; row < block.row + block.rows; ++row) {
         for (uint32_t column = block.column; column < block.column + block.columns; ++column, ++weight) {
             const uint32_t v = part.in_image(parts_.gluing.width, row, column);
-            if (v != kNone) moved_.push_back({v, *weight});
+            if (v != kNone) moved.push_back({v, *weight});
         }
     }
 }

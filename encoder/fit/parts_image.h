@@ -38,6 +38,7 @@ class PartsImage final : public CodedImage {
 
     const Units& units() const override { return units_; }
     Levels decode() const override { return parts_.decode(bands_, units_); }
+    Levels decode_changed(const PlaceInPart& place, uint32_t component, int32_t by) const override;
     std::vector<float> samples(const Levels& levels) const override { return parts_.samples(levels, units_); }
     DetailFrame frame(const Levels& levels, const PlaceInPart& place) const override;
     uint32_t depths(uint32_t part) const override { return bands_[part].steps(); }
@@ -46,7 +47,7 @@ class PartsImage final : public CodedImage {
     std::vector<Band> bands() override { return all_bands(bands_); }
     std::vector<CellInPart> parts_at(uint32_t cell) const override;
     PlaceInPart source_of(const PlaceInPart& place) const override;
-    const WeightedSamples& moved_by(const PlaceInPart& source) override;
+    WeightedSamples moved_by(const PlaceInPart& source) const override;
 
   private:
     struct Copy {
@@ -58,7 +59,7 @@ class PartsImage final : public CodedImage {
     };
 
     void find_owners();
-    void add_block(const CodedPart& part, const ResponseBlock& block);
+    void add_block(const CodedPart& part, const ResponseBlock& block, WeightedSamples& moved) const;
 
     const ImageParts& parts_;
     std::vector<DetailResponses>& responses_;
@@ -66,7 +67,6 @@ class PartsImage final : public CodedImage {
     Units units_;
     std::vector<std::vector<Depth>> depths_;  // per part, finest first
     std::vector<uint32_t> owner_;             // part of each sample
-    WeightedSamples moved_;
 };
 
 }  // namespace gim

@@ -69,9 +69,15 @@ TileTexels texels_of(const CodedComplex& coded, uint32_t side) {
     return texels;
 }
 
-CodedImage::Levels TileFoldImage::decode() const {
-    return {shape_.is_sharp ? decode_tiles<TilesSharp>(complex_, shape_, pyramid_, coding_)
-                            : decode_tiles<Tiles97>(complex_, shape_, pyramid_, coding_)};
+CodedImage::Levels TileFoldImage::decode(const TilePyramid<int32_t>& pyramid) const {
+    return {shape_.is_sharp ? decode_tiles<TilesSharp>(complex_, shape_, pyramid, coding_)
+                            : decode_tiles<Tiles97>(complex_, shape_, pyramid, coding_)};
+}
+
+CodedImage::Levels TileFoldImage::decode_changed(const PlaceInPart& place, uint32_t component, int32_t by) const {
+    TilePyramid<int32_t> changed = pyramid_;
+    band_in(changed, place).row(place.row)[3 * place.column + component] += by;
+    return decode(changed);
 }
 
 std::vector<float> TileFoldImage::samples(const Levels& levels) const {
@@ -93,11 +99,13 @@ DetailFrame TileFoldImage::frame(const Levels& levels, const PlaceInPart& place)
 
 DetailSteps TileFoldImage::steps_at(uint32_t depth) const { return tile_steps_at(shape_, coding_, depth); }
 
-Band TileFoldImage::band(const PlaceInPart& place) {
+Band TileFoldImage::band_in(TilePyramid<int32_t>& pyramid, const PlaceInPart& place) const {
     const uint32_t step = shape_.exponent - place.depth;
     const TilePlanes planes(1u << step);
-    return planes.bands(pyramid_.details[step].data() + place.part * planes.details()).of(place.orientation);
+    return planes.bands(pyramid.details[step].data() + place.part * planes.details()).of(place.orientation);
 }
+
+Band TileFoldImage::band(const PlaceInPart& place) { return band_in(pyramid_, place); }
 
 std::vector<Band> TileFoldImage::bands() {
     std::vector<Band> bands;

@@ -38,7 +38,8 @@ class TileFoldImage final : public CodedImage {
           coding_(detail_coding_of(units)) {}
 
     const Units& units() const override { return units_; }
-    Levels decode() const override;
+    Levels decode() const override { return decode(pyramid_); }
+    Levels decode_changed(const PlaceInPart& place, uint32_t component, int32_t by) const override;
     std::vector<float> samples(const Levels& levels) const override;
     DetailFrame frame(const Levels& levels, const PlaceInPart& place) const override;
     uint32_t depths(uint32_t) const override { return shape_.exponent; }
@@ -47,9 +48,12 @@ class TileFoldImage final : public CodedImage {
     std::vector<Band> bands() override;
     std::vector<CellInPart> parts_at(uint32_t cell) const override;
     PlaceInPart source_of(const PlaceInPart& place) const override;
-    const WeightedSamples& moved_by(const PlaceInPart& source) override { return responses_.at(source); }
+    WeightedSamples moved_by(const PlaceInPart& source) const override { return responses_.at(source); }
 
   private:
+    Levels decode(const TilePyramid<int32_t>& pyramid) const;
+    Band band_in(TilePyramid<int32_t>& pyramid, const PlaceInPart& place) const;
+
     const QuadComplex& complex_;
     TileShape shape_;
     const TileTexels& texels_;

@@ -44,17 +44,18 @@ uint64_t TileResponses::key_of(const PlaceInPart& place) {
     return (band << 32) | (uint64_t{place.row} << 16) | place.column;
 }
 
-const WeightedSamples& TileResponses::at(const PlaceInPart& place) {
-    const auto found = known_.find(key_of(place));
-    if (found != known_.end()) return found->second;
-    if (kept_ > kMostKept) {
-        known_.clear();
-        kept_ = 0;
+WeightedSamples TileResponses::at(const PlaceInPart& place) {
+    const uint64_t key = key_of(place);
+    {
+        const std::lock_guard lock(guards_known_);
+        const auto found = known_.find(key);
+        if (found != known_.end()) return found->second;
     }
     const Patch patch = patch_around(place.part, place.depth);
-    const std::vector<float> grids = synthesized(patch, place);
-    keep(patch, grids, place);
-    return known_.at(key_of(place));
+    Known found = weights_in(patch, synthesized(patch, place), place);
+    WeightedSamples wanted = found.at(key);
+    keep(std::move(found));
+    return wanted;
 }
 
 // The other tiles around have zeros only, so it does not matter what the complex is there.
@@ -127,20 +128,33 @@ std::vector<float> TileResponses::synthesized(const Patch& patch, const PlaceInP
     return shape_.is_sharp ? restore_tiles<TilesSharp>(complex, pyramid) : restore_tiles<Tiles97>(complex, pyramid);
 }
 
-void TileResponses::keep(const Patch& patch, const std::vector<float>& grids, const PlaceInPart& place) {
+TileResponses::Known TileResponses::weights_in(const Patch& patch, const std::vector<float>& grids,
+                                               const PlaceInPart& place) const {
     const size_t size = ((size_t{1} << shape_.exponent) + 1) * ((size_t{1} << shape_.exponent) + 1);
+    Known found;
     for (size_t k = 0; k < 3; ++k) {
         float most = 0;
         for (size_t i = k; i < grids.size(); i += 3) most = std::max(most, std::abs(grids[i]));
         if (most == 0) continue;  // there is no such detail, or it is that of another tile
-        WeightedSamples weights;
+        WeightedSamples& weights = found[key_of({place.part, place.depth, kOrientations[k], place.row, place.column})];
         for (size_t i = 0; i < grids.size() / 3; ++i) {
             const float weight = grids[3 * i + k];
             if (std::abs(weight) >= kLeast * most)
                 weights.push_back({samples_[patch.tiles[i / size] * size + i % size], weight});
         }
-        kept_ += weights.size();
-        known_[key_of({place.part, place.depth, kOrientations[k], place.row, place.column})] = std::move(weights);
+    }
+    return found;
+}
+
+void TileResponses::keep(Known more) {
+    const std::lock_guard lock(guards_known_);
+    if (kept_ > kMostKept) {
+        known_.clear();
+        kept_ = 0;
+    }
+    for (auto& [key, weights] : more) {
+        const size_t count = weights.size();
+        if (known_.emplace(key, std::move(weights)).second) kept_ += count;
     }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -20,8 +21,8 @@ class TileResponses {
     TileResponses(const QuadComplex& complex, const TileShape& shape, const std::vector<uint32_t>& samples);
 
     // Returns what a detail moves. place: a source; its part is a tile. Leaves out what is less than 2 % of the largest
-    // weight. The reference holds until the next call. The first call for a place costs a synthesis of the tiles around.
-    const WeightedSamples& at(const PlaceInPart& place);
+    // weight. The first call for a place costs a synthesis of the tiles around. Several threads may call it at once.
+    WeightedSamples at(const PlaceInPart& place);
 
   private:
     struct Patch {
@@ -30,7 +31,9 @@ class TileResponses {
     };
     Patch patch_around(uint32_t tile, uint32_t depth) const;
     std::vector<float> synthesized(const Patch& patch, const PlaceInPart& place) const;
-    void keep(const Patch& patch, const std::vector<float>& grids, const PlaceInPart& place);
+    using Known = std::unordered_map<uint64_t, WeightedSamples>;
+    Known weights_in(const Patch& patch, const std::vector<float>& grids, const PlaceInPart& place) const;
+    void keep(Known more);
     static uint64_t key_of(const PlaceInPart& place);
 
     const QuadComplex& complex_;
@@ -38,7 +41,8 @@ class TileResponses {
     const std::vector<uint32_t>& samples_;
     std::vector<uint32_t> first_at_,
         tiles_at_;  // tiles at each vertex: tiles_at_[first_at_[v] .. first_at_[v + 1] - 1]
-    std::unordered_map<uint64_t, WeightedSamples> known_;
+    std::mutex guards_known_;
+    Known known_;
     size_t kept_ = 0;  // weights
 };
 
