@@ -53,16 +53,6 @@ uint32_t most_stretched(const Surface& surface, const OpenedMesh& disk, const st
     return worst;
 }
 
-// Cuts are compared by maps that are not quite at their optimum. That ranks them as well, in half of the time.
-ParametrizeOptions brief_map() {
-    ParametrizeOptions brief;
-    brief.growth = 1.4;
-    brief.sweeps = 3;
-    brief.final_sweeps = 8;
-    brief.tolerance = 1e-3;
-    return brief;
-}
-
 // Maps the surface to the square along the state's cut and rates the map.
 void judge(const Surface& surface, const AugmentOptions& options, State& state) {
     state.efficiency = state.merit = 0;

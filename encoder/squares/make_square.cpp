@@ -93,11 +93,13 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
 
     clock.begin(Stage::kParametrize);
     const Mesh& disk = cut.boundary.opened.mesh;
-    const std::vector<Vec2> border = boundary_uv(cut.boundary, options.side);
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     ParametrizeOptions weighted;
     weighted.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    GIM_TRY(even, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
+    ParametrizeOptions first_map = options.density ? brief_map() : ParametrizeOptions{};
+    first_map.squeeze = weighted.squeeze;
+    const DiskMapper mapper(disk, cut.boundary.sides, boundary_uv(cut.boundary, options.side));
+    GIM_TRY(even, mapper.map(first_map, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     square.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {
@@ -106,7 +108,7 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     if (options.density) {
         GIM_TRY(first, sample_surface(cut.boundary, uv, options.side));
         weighted.importance = importance_from_error(disk, uv, first, lossless ? DensityOptions{} : kCodedDensity);
-        GIM_TRY(adapted, parametrize(disk, cut.boundary.sides, border, weighted, clock.progress()));
+        GIM_TRY(adapted, mapper.map(weighted, clock.progress()));
         uv = std::move(adapted);
         if (observer) observer(show_map("map-density", "denser where it errs", cut.boundary.opened, uv));
     }

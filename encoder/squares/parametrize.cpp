@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "encoder/base/result.h"
 #include "encoder/surface/describe_mesh.h"
@@ -144,52 +145,76 @@ Error flipped_error(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return {Stage::kParametrize, "no triangle is flipped"};
 }
 
-// Coarsens the mesh to its boundary and some interior vertices, maps that, and refines it. Returns an Error if a face
-// has no room in double precision.
-Result<std::vector<Vec2>> map_from(uint32_t interior, const Mesh& mesh, const std::vector<uint8_t>& sides,
-                                   std::vector<Vec2> uv, const ParametrizeOptions& options, const Progress& progress) {
-    ProgressiveMesh hierarchy(mesh);
-    const auto boundary = static_cast<uint32_t>(sides.size() - std::count(sides.begin(), sides.end(), 0));
-    simplify(hierarchy, mesh.positions, {boundary + interior, true, sides});
+}  // namespace
+
+DiskMapper::DiskMapper(const Mesh& mesh, std::vector<uint8_t> sides, std::vector<Vec2> uv)
+    : mesh_(mesh),
+      sides_(std::move(sides)),
+      border_(std::move(uv)),
+      boundary_(static_cast<uint32_t>(sides_.size() - std::count(sides_.begin(), sides_.end(), 0))),
+      coarse_(coarsened_to(kBaseInterior)) {}
+
+// Coarsens the mesh to its boundary and some interior vertices.
+ProgressiveMesh DiskMapper::coarsened_to(uint32_t interior) const {
+    ProgressiveMesh hierarchy(mesh_);
+    simplify(hierarchy, mesh_.positions, {boundary_ + interior, true, sides_});
+    return hierarchy;
+}
+
+// Maps a coarse version, and refines it. Returns an Error if a face has no room in double precision.
+Result<std::vector<Vec2>> DiskMapper::map_from(ProgressiveMesh hierarchy, const ParametrizeOptions& options,
+                                               const Progress& progress) const {
+    std::vector<Vec2> uv = border_;
     if (!tutte_map(hierarchy, uv) || !is_upright(hierarchy, uv))
         return Error{Stage::kParametrize, "a coarse version of the surface could not be mapped to the square"};
 
-    Optimiser optimiser(hierarchy, mesh.positions, options, surface_area(mesh), uv);
+    Optimiser optimiser(hierarchy, mesh_.positions, options, surface_area(mesh_), uv);
     optimiser.sweep_until(kBaseSweeps, options.tolerance);
     const auto total = static_cast<double>(hierarchy.collapse_count());
-    double sweep_at = options.growth * std::max(hierarchy.vertex_count() - boundary, 1u);
+    double sweep_at = options.growth * std::max(hierarchy.vertex_count() - boundary_, 1u);
     while (hierarchy.coarsened()) {
-        if (!optimiser.insert(hierarchy.split())) return flipped_error(mesh, uv);
-        if (hierarchy.vertex_count() - boundary < sweep_at) continue;
+        if (!optimiser.insert(hierarchy.split())) return flipped_error(mesh_, uv);
+        if (hierarchy.vertex_count() - boundary_ < sweep_at) continue;
         sweep_at *= options.growth;
         optimiser.sweep_until(options.sweeps, options.tolerance);
         if (progress) progress(Stage::kParametrize, 1 - static_cast<double>(hierarchy.collapse_count()) / total);
     }
     optimiser.sweep_until(options.final_sweeps, options.tolerance);
-    if (count_flipped(mesh, uv) != 0) return flipped_error(mesh, uv);
+    if (count_flipped(mesh_, uv) != 0) return flipped_error(mesh_, uv);
     return uv;
 }
 
-}  // namespace
+// Tutte's map shrinks by a factor with every triangle that encloses the next. Where many do, it leaves no digits to the
+// innermost faces. A coarser base mesh has fewer, and those that come back later are spread soon.
+Result<std::vector<Vec2>> DiskMapper::map(const ParametrizeOptions& options, const Progress& progress) const {
+    auto map = map_from(coarse_, options, progress);
+    ParametrizeOptions patient = options;
+    patient.growth = std::min(options.growth, kPatientGrowth);
+    for (uint32_t interior = kBaseInterior; !map.ok() && interior > 0;) {
+        interior /= kFewerInterior;
+        map = map_from(coarsened_to(interior), patient, progress);
+    }
+    return map;
+}
+
+Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
+                                      const ParametrizeOptions& options, const Progress& progress) {
+    return DiskMapper(mesh, sides, std::move(uv)).map(options, progress);
+}
+
+ParametrizeOptions brief_map() {
+    ParametrizeOptions brief;
+    brief.growth = 1.4;
+    brief.sweeps = 3;
+    brief.final_sweeps = 8;
+    brief.tolerance = 1e-3;
+    return brief;
+}
 
 uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return static_cast<uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
         return !(twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0);
     }));
-}
-
-// Tutte's map shrinks by a factor with every triangle that encloses the next. Where many do, it leaves no digits to the
-// innermost faces. A coarser base mesh has fewer, and those that come back later are spread soon.
-Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
-                                      const ParametrizeOptions& options, const Progress& progress) {
-    auto map = map_from(kBaseInterior, mesh, sides, uv, options, progress);
-    ParametrizeOptions patient = options;
-    patient.growth = std::min(options.growth, kPatientGrowth);
-    for (uint32_t interior = kBaseInterior; !map.ok() && interior > 0;) {
-        interior /= kFewerInterior;
-        map = map_from(interior, mesh, sides, uv, patient, progress);
-    }
-    return map;
 }
 
 }  // namespace gim

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "encoder/surface/mesh.h"
+#include "encoder/surface/progressive_mesh.h"
 #include "gim/encoder.h"
 
 namespace gim {
@@ -26,10 +27,36 @@ struct ParametrizeOptions {
     std::vector<double> importance;
 };
 
-// In:  a disk; per vertex the sides of the square that it lies on (0: interior); `uv` of the boundary,
-//      counter-clockwise. No interior edge may run along one side (boundary_map.h sees to that).
-// Out: uv of every vertex, with every triangle counter-clockwise. If that is impossible, an Error says where.
-// Cost: about O(V log V). Deterministic.
+// Options of a map that is not quite at its optimum, in half of the time. It serves to compare cuts, and to see where a map
+// errs.
+ParametrizeOptions brief_map();
+
+// Maps one disk, several times if need be. It is coarsened once.
+class DiskMapper {
+  public:
+    // In: a disk; per vertex the sides of the square that it lies on (0: interior); `uv` of the boundary,
+    //     counter-clockwise. No interior edge may run along one side (boundary_map.h sees to that). Keeps a reference to the
+    //     mesh.
+    // Cost: about O(V log V).
+    DiskMapper(const Mesh& mesh, std::vector<uint8_t> sides, std::vector<Vec2> uv);
+
+    // Returns uv of every vertex, with every triangle counter-clockwise. If that is impossible, an Error says where.
+    // Cost: about O(V log V). Deterministic.
+    Result<std::vector<Vec2>> map(const ParametrizeOptions& options, const Progress& progress = {}) const;
+
+  private:
+    ProgressiveMesh coarsened_to(uint32_t interior) const;
+    Result<std::vector<Vec2>> map_from(ProgressiveMesh hierarchy, const ParametrizeOptions& options,
+                                       const Progress& progress) const;
+
+    const Mesh& mesh_;
+    std::vector<uint8_t> sides_;
+    std::vector<Vec2> border_;
+    uint32_t boundary_;  // number of vertices on it
+    ProgressiveMesh coarse_;
+};
+
+// Maps a disk once, as DiskMapper does.
 Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_t>& sides, std::vector<Vec2> uv,
                                       const ParametrizeOptions& options, const Progress& progress = {});
 
