@@ -1,5 +1,7 @@
 #include "encoder/layout_runs.h"
 
+#include <tbb/parallel_for.h>
+
 #include <utility>
 #include <vector>
 
@@ -49,36 +51,43 @@ Result<LayoutRuns::Started*> LayoutRuns::start(const EncodeOptions& now) {
     return &started;
 }
 
-void LayoutRuns::make_quietly(const EncodeOptions& now, Started& started) {
+void LayoutRuns::make_quietly(const Waiting& waiting) {
+    Started& started = *waiting.started;
     if (started.made || started.run) return;
     StageClock quiet({});
     CutPreferences cuts = cuts_;
-    auto made = make(now, {}, cuts, quiet);
+    auto made = make(*waiting.options, {}, cuts, quiet);
     if (made.ok()) started.made = std::move(made.value());
+}
+
+std::vector<LayoutRuns::Waiting> LayoutRuns::waiting_for(const std::vector<EncodeOptions>& all) {
+    std::vector<Waiting> waiting;
+    for (const EncodeOptions& now : all) {
+        if (layout() == Layout::kTiles) tileable_.of(now.creases);  // made here, for what follows only reads it
+        waiting.push_back({&now, &started_[variant_of(now)]});
+    }
+    return waiting;
 }
 
 void LayoutRuns::make_ahead() {
     const bool are_tiles = layout() == Layout::kTiles;
     if (observer_ || (!are_tiles && may_choose_cut(options_))) return;
-    const EncodeOptions now =
-        are_tiles ? usual_tiles(options_, tileable_.has_creases()) : size_variants(options_).front();
-    make_quietly(now, started_[variant_of(now)]);
+    const std::vector<EncodeOptions> all = are_tiles ? likely_tiles(options_, tileable_.has_creases())
+                                                     : std::vector<EncodeOptions>{size_variants(options_).front()};
+    const std::vector<Waiting> waiting = waiting_for(all);
+    tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { make_quietly(waiting[i]); });
 }
 
 void LayoutRuns::make_all_ahead(const std::vector<EncodeOptions>& all) {
-    std::vector<Started*> waiting;
-    for (const EncodeOptions& now : all) {
-        tileable_.of(now.creases);  // made here, for what follows only reads it
-        waiting.push_back(&started_[variant_of(now)]);
-    }
+    const std::vector<Waiting> waiting = waiting_for(all);
     clock_.begin(Stage::kParametrize);
-    for_each_at_once(all.size(), clock_, [&](size_t i) { make_quietly(all[i], *waiting[i]); });
+    for_each_at_once(all.size(), clock_, [&](size_t i) { make_quietly(waiting[i]); });
 }
 
 Result<Estimate> LayoutRuns::estimate_of(const EncodeOptions& now, std::optional<double> near) {
     GIM_TRY(started, start(now));
     if (!started->estimate) {
-        GIM_TRY(estimate, started->run->estimate(near));
+        GIM_TRY(estimate, started->run->estimate(near ? near : near_));
         started->estimate = estimate;
     }
     return *started->estimate;

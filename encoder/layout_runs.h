@@ -36,11 +36,15 @@ class LayoutRuns {
 
     Layout layout() const { return layout_.layout; }
 
-    // Sets another target that needs the same images. Only before the first estimate.
-    void aim(const RateTarget& rate) { options_.rate = rate; }
+    // Sets another target that needs the same images, and a quantizer that may be near to its own. Only before the first
+    // estimate.
+    void aim(const RateTarget& rate, double near) {
+        options_.rate = rate;
+        near_ = near;
+    }
 
-    // Makes the images of the variant that comes first, and does not use the clock. They wait for the calls below, which also tell
-    // what fails. Does nothing where the cut is chosen, or somebody looks on.
+    // Makes the images of the first side, or of the tiles that are likely to be tried, and does not use the clock. They wait for
+    // the calls below, which also tell what fails. Does nothing where the cut is chosen, or somebody looks on.
     void make_ahead();
 
     // Makes the images of the variant that comes first, and fits them briefly. Returns what it costs. Squares are cut the
@@ -72,7 +76,12 @@ class LayoutRuns {
     Result<Encoded> best_of_variants(const EncodeOptions& now, const Contest& contest);
     Result<Started*> start(const EncodeOptions& now);
     void make_all_ahead(const std::vector<EncodeOptions>& all);
-    void make_quietly(const EncodeOptions& now, Started& started);
+    struct Waiting {
+        const EncodeOptions* options;
+        Started* started;
+    };
+    std::vector<Waiting> waiting_for(const std::vector<EncodeOptions>& all);
+    void make_quietly(const Waiting& waiting);
     Result<Made> make(const EncodeOptions& now, const Observer& observer, CutPreferences& cuts, StageClock& clock);
     std::unique_ptr<FileRun> run_of(Made made, const EncodeOptions& now);
     Result<Estimate> estimate_without_choice(const EncodeOptions& now);
@@ -81,6 +90,7 @@ class LayoutRuns {
     const LayoutEntry& layout_;
     const Prepared& prepared_;
     EncodeOptions options_;
+    std::optional<double> near_;  // a quantizer to begin with
     StageClock& clock_;
     Observer observer_;                   // none when it has seen images
     CutPreferences cuts_;                 // chosen at the first side, then kept

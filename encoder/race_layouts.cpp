@@ -81,19 +81,21 @@ class Race {
             clock_.begin(Stage::kParametrize);
             for_each_at_once(waiting_.size(), clock_, [&](size_t i) { waiting_[i]->make_ahead(); });
         }
+        double near = 0;
         while (racers_.empty() && !waiting_.empty()) {
             const auto estimate = waiting_.front()->estimate();
             if (estimate.ok()) {
                 racers_.push_back({std::move(waiting_.front()), estimate.value().log_bytes});
                 is_target_rough_ = true;
                 options_.rate = {RateTarget::Kind::kPsnr, estimate.value().psnr};
+                near = estimate.value().quantizer;
             } else {
                 take(estimate.error());
             }
             waiting_.erase(waiting_.begin());
         }
         if (is_target_rough_)
-            for (const auto& runs : waiting_) runs->aim(options_.rate);
+            for (const auto& runs : waiting_) runs->aim(options_.rate, near);
     }
 
     // Where brief fits also decided about the target, those alone tell who is coded, and only the file of who is nearly as

@@ -74,8 +74,8 @@ float tangential_pull_of(CodedFit::Effort effort) {
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
-// Samples of the reference per face. What cycles that other rounds follow lack of it, these find.
-constexpr double kDensity = 1.5, kDensityOfCycles = 0.75;
+// Samples of the reference per face. What rounds miss that others follow, these find.
+constexpr double kDensity = 1.5, kSparse = 0.75;
 constexpr double kTolerance = 1e-4;
 
 double dot(const Coordinates& a, const Coordinates& b) {
@@ -273,13 +273,13 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     // Cycles mend no folds, since later rounds would undo that.
     const auto rounds = [&](const Schedule::Part& part, double reach, bool is_last) {
         const int full = is_last ? kFullUnfoldings : 0;
-        const double density = is_last || effort == Effort::kSearch ? kDensity : kDensityOfCycles;
+        const int sparse = is_last || effort == Effort::kSearch ? part.free / 2 : part.free + part.held;
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;
             if (free == Free::kNormals) impl_->quantize(units, is_last);
             if (free == Free::kAll) impl_->unfold(is_alone || k >= part.free - full ? kFarthest : reach);
-            impl_->round(units, free, tangential_pull_of(effort), density);
+            impl_->round(units, free, tangential_pull_of(effort), k < sparse ? kSparse : kDensity);
         }
     };
     if (effort == Effort::kAdjust) impl_->back_to_cycled();

@@ -77,7 +77,7 @@ FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing,
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
     const ImageSurface image(positions, gluing);
     const size_t faces = image.mesh.triangles.size();
-    const auto density = static_cast<uint32_t>(std::max(faces / 2, std::min<size_t>(20000, 16 * faces)));
+    const auto density = static_cast<uint32_t>(std::max(faces / 8, std::min<size_t>(20000, 16 * faces)));
     FitQuality quality;
 
     const ClosestPointTree tree(image.mesh);

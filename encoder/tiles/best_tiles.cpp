@@ -16,6 +16,7 @@ namespace gim {
 namespace {
 
 constexpr uint32_t kMore = 180, kFewer = 60;  // more for limbs and high rates, fewer for what is nearly a box
+constexpr std::array<uint32_t, 2> kOthers = {kMore, kFewer};
 // Bytes for each tile above which more tiles probably take fewer bytes. A tile by itself takes about 4.
 constexpr double kDearTile = 25;
 // Between creases, fewer tiles are enough.
@@ -64,20 +65,31 @@ EncodeOptions in_number(EncodeOptions options, uint32_t tiles) {
 }
 
 // With creases and without, if the surface has any.
+std::vector<EncodeOptions> in_usual_number(const EncodeOptions& given, bool has_creases) {
+    std::vector<EncodeOptions> all = {usual_tiles(given, has_creases)};
+    if (!all[0].creases) return all;
+    all.push_back(all[0]);
+    all[1].creases = false;
+    return all;
+}
+
+bool may_take_other_numbers(const EncodeOptions& options) {
+    return options.tiles == 0 && effort_of(options).all_counts;
+}
+
 Result<Trials> tried_in_usual_number(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
-    const EncodeOptions options = usual_tiles(given, has_creases);
+    const std::vector<EncodeOptions> all = in_usual_number(given, has_creases);
     Trials trials(runs);
-    if (!options.creases) {
-        trials.add(options);
-    } else {
-        EncodeOptions without = options;
-        without.creases = false;
-        trials.make_ahead({options, without});
-        trials.add(options);
-        trials.add(without);
-    }
+    if (all.size() > 1) trials.make_ahead(all);
+    for (const EncodeOptions& options : all) trials.add(options);
     if (trials.cheapest_first().empty()) return *trials.first_error();
     return trials;
+}
+
+std::vector<EncodeOptions> in_other_numbers(const EncodeOptions& usual) {
+    std::vector<EncodeOptions> others;
+    for (const uint32_t tiles : usual.creases ? kOthersWithCreases : kOthers) others.push_back(in_number(usual, tiles));
+    return others;
 }
 
 // Tries the number that is probably better than the usual one. Tries the other one unless the first is clearly better.
@@ -128,6 +140,14 @@ EncodeOptions usual_tiles(const EncodeOptions& given, bool has_creases) {
     return options;
 }
 
+std::vector<EncodeOptions> likely_tiles(const EncodeOptions& given, bool has_creases) {
+    std::vector<EncodeOptions> all = in_usual_number(given, has_creases);
+    if (!may_take_other_numbers(given)) return all;
+    const std::vector<EncodeOptions> others = in_other_numbers(all[0]);
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+}
+
 Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
     GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
     return trials.cheapest_first();
@@ -135,11 +155,10 @@ Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const En
 
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& given, bool has_creases) {
     GIM_TRY(trials, tried_in_usual_number(runs, given, has_creases));
-    if (given.tiles != 0 || !effort_of(given).all_counts) return trials.cheapest_first();
+    if (!may_take_other_numbers(given)) return trials.cheapest_first();
     const TriedTiles first = trials.cheapest_first()[0];
     if (first.options.creases) {
-        std::vector<EncodeOptions> others;
-        for (const uint32_t tiles : kOthersWithCreases) others.push_back(in_number(first.options, tiles));
+        const std::vector<EncodeOptions> others = in_other_numbers(first.options);
         trials.make_ahead(others);
         for (const EncodeOptions& other : others) trials.add(other);
     } else {

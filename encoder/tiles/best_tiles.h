@@ -28,6 +28,9 @@ Result<std::vector<TriedTiles>> try_usual_tiles(const CodingRuns& runs, const En
 // The options of the first of them: the usual number, and creases if there are any.
 EncodeOptions usual_tiles(const EncodeOptions& options, bool has_creases);
 
+// The options of all that try_tiles() is likely to try.
+std::vector<EncodeOptions> likely_tiles(const EncodeOptions& options, bool has_creases);
+
 // The same; goes on in other numbers if the options leave the number open.
 Result<std::vector<TriedTiles>> try_tiles(const CodingRuns& runs, const EncodeOptions& options, bool has_creases);
 
