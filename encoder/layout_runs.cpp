@@ -22,7 +22,7 @@ LayoutRuns::LayoutRuns(const LayoutEntry& layout, const Prepared& prepared, cons
       options_(options),
       clock_(clock),
       observer_(observer),
-      tileable_(prepared.mesh, prepared.authored, options) {
+      tileable_(prepared.mesh, prepared.authored) {
     options_.layout = layout.layout;
 }
 

@@ -77,7 +77,7 @@ double effective_samples_of_tiles(const Mesh& mesh, const EncodeOptions& asked, 
     EncodeOptions options = unfitted(asked);
     if (options.tiles == 0) options.tiles = tiles_that_fill(options.samples);
     const AuthoredEdges nothing;
-    const auto tiles = make_tiles(TileableSurfaces(mesh, nothing, options).of(options.creases), mesh, options, clock);
+    const auto tiles = make_tiles(TileableSurfaces(mesh, nothing).of(options.creases), mesh, options, clock);
     return tiles.ok() ? tiles.value().stretch_efficiency * double(tiles.value().tiles.positions.size()) : 0;
 }
 

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "encoder/base/parallel.h"
 #include "encoder/base/result.h"
@@ -105,7 +106,8 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     const GridGluing& gluing = image.gluing;
     const FitFrame frame(input);
     const FitReference reference(Mesh{frame.into(input.positions), input.triangles});
-    const FitQuality before = Fitter(start, reference, gluing, frame, options).quality();
+    std::optional<Fitter> fitter(std::in_place, start, reference, gluing, frame, options);
+    const FitQuality before = fitter->quality();
     const Schedule schedule = schedule_of(options);
 
     // An image without folds stays so from the first round on. Folds stay if unfolding them costs accuracy.
@@ -121,20 +123,20 @@ Fitted fit_in_arena(const GeometryImage& image, const Mesh& input, const FitOpti
     result.positions = start;
     FitQuality after = before;
     for (size_t k = 0; k < plans.size(); ++k) {
-        Fitter fitter(start, reference, gluing, frame, options);
-        run_schedule(fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
+        if (k > 0) fitter.emplace(start, reference, gluing, frame, options);
+        run_schedule(*fitter, schedule, plans[k], options.seed, k == 0 ? progress : Progress{});
         result.rounds += schedule.rounds;
-        FitQuality reached = fitter.quality();
+        FitQuality reached = fitter->quality();
         for (int again = 0; again < kLastUnfoldings && reached.folds > std::max(before.folds, few); ++again) {
-            fitter.unfold();
-            reached = fitter.quality();
+            fitter->unfold();
+            reached = fitter->quality();
         }
         if (!no_worse(reached, before, few)) continue;
         if (result.improved && kUnfoldPrice * distance(reached) >= distance(after))
             break;  // the unfolded fit is better
         after = reached;
         for (uint32_t v = 0; v < start.size(); ++v) {
-            if (gluing.is_defined(v) && !fitter.held()[v]) result.positions[v] = frame.out_of(fitter.positions()[v]);
+            if (gluing.is_defined(v) && !fitter->held()[v]) result.positions[v] = frame.out_of(fitter->positions()[v]);
         }
         const bool compare_with_next = compare && k == 0 && !result.improved;
         result.improved = true;
@@ -169,8 +171,9 @@ Result<FitQuality> measure_fit(const GeometryImage& image, const Mesh& reference
         const FitFrame frame(reference);
         const FitReference scaled(Mesh{frame.into(reference.positions), reference.triangles});
         const std::vector<Vec3> points = frame.into(image.positions);
+        ClosestPointTree tree(Mesh{});
         quality = measure(points, image.gluing, scaled, held.empty() ? std::vector<bool>(points.size(), false) : held,
-                          front_side(points, image.gluing, scaled));
+                          front_side(points, image.gluing, scaled), tree);
         quality.to_image /= frame.scale;
         quality.to_reference /= frame.scale;
     });

@@ -73,14 +73,14 @@ FitReference::FitReference(Mesh input)
       curve_tree(curve) {}
 
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
-                   const std::vector<bool>& held, double front) {
+                   const std::vector<bool>& held, double front, ClosestPointTree& tree) {
     constexpr uint64_t kSeed = 0x6d6561737572655fu;
     const ImageSurface image(positions, gluing);
     const size_t faces = image.mesh.triangles.size();
     const auto density = static_cast<uint32_t>(std::max(faces / 8, std::min<size_t>(20000, 16 * faces)));
     FitQuality quality;
 
-    const ClosestPointTree tree(image.mesh);
+    tree.refit(image.mesh);
     const SurfaceSamples outer = sample_by_area(reference.mesh, density, kSeed);
     const std::vector<ClosestPoint> to_image = tree.find_all(outer.points);
     quality.to_image =
@@ -151,7 +151,7 @@ void Fitter::begin_at(std::vector<Vec3> positions) {
     face_hint_.assign(face_hint_.size(), kNone);
 }
 
-FitQuality Fitter::quality() const { return measure(x_, gluing_, reference_, held_, front_); }
+FitQuality Fitter::quality() { return measure(x_, gluing_, reference_, held_, front_, image_tree_); }
 
 uint64_t Fitter::folds() const { return count_folds(ImageSurface(x_, gluing_), reference_, held_, front_); }
 

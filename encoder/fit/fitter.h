@@ -63,7 +63,7 @@ class Fitter {
     const std::vector<bool>& held() const { return held_; }
     // The sign that makes the image face outwards.
     double front() const { return front_; }
-    FitQuality quality() const;
+    FitQuality quality();
     uint64_t folds() const;  // the same number as in quality()
     // positions: in the frame; equal within a class.
     void place(std::vector<Vec3> positions) { x_ = std::move(positions); }
@@ -150,9 +150,9 @@ class Fitter {
 };
 
 // Measures how far an image is from the reference, by fresh samples, and its folds at the centres of its faces. front:
-// the sign that makes the image face outwards.
+// the sign that makes the image face outwards. tree: of an earlier state of the image, or of nothing; becomes that of this one.
 FitQuality measure(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference,
-                   const std::vector<bool>& held, double front);
+                   const std::vector<bool>& held, double front, ClosestPointTree& tree);
 // Returns +1 if most of the image's area looks the same way as the reference, else -1.
 double front_side(const std::vector<Vec3>& positions, const GridGluing& gluing, const FitReference& reference);
 

@@ -1,7 +1,6 @@
 #include "encoder/tiles/make_tiles.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "encoder/fit/fit_strength.h"
 #include "encoder/image/density.h"
 #include "encoder/surface/closest_point.h"
-#include "encoder/surface/coarsened.h"
 #include "encoder/surface/stretch.h"
 #include "encoder/tiles/code_complex.h"
 #include "encoder/tiles/crease_rails.h"
@@ -24,10 +22,6 @@
 namespace gim {
 
 namespace {
-
-// Denser surfaces make base and map slow. Nine scans, 65,536 samples: 0.37 vertices a sample change bytes at equal PSNR by
-// -0.2 % in the mean (-5 to +4 %), 0.18 by +0.4 %.
-constexpr double kVerticesPerSample = 0.4;
 
 // The finest tiles whose atlas has at most so many samples; at least 2 x 2 intervals.
 uint32_t exponent_within(uint32_t tiles, uint64_t samples) {
@@ -162,11 +156,6 @@ TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases
     return {std::move(input), std::move(hierarchy)};
 }
 
-TileableSurfaces::TileableSurfaces(const Mesh& mesh, const AuthoredEdges& authored, const EncodeOptions& options)
-    : mesh_(mesh),
-      authored_(authored),
-      most_vertices_(is_fitted_to_codec(options) ? kVerticesPerSample * options.samples : HUGE_VAL) {}
-
 const std::vector<bool>& TileableSurfaces::creases() {
     if (!creases_) creases_ = creases_of(mesh_, authored_);
     return *creases_;
@@ -177,8 +166,7 @@ bool TileableSurfaces::has_creases() { return std::find(creases().begin(), creas
 const TileableSurface& TileableSurfaces::of(bool with_creases) {
     const bool creased = with_creases && has_creases();
     std::optional<TileableSurface>& surface = creased ? creased_ : smooth_;
-    if (surface) return *surface;
-    surface = creased ? make_tileable(mesh_, creases()) : make_tileable(coarsened_to(mesh_, most_vertices_), {});
+    if (!surface) surface = make_tileable(mesh_, creased ? creases() : std::vector<bool>());
     return *surface;
 }
 

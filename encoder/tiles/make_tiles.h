@@ -25,12 +25,11 @@ struct TileableSurface {
 // mesh: clean. creases: per half-edge 3f+i whether its edge is one that tiles keep; empty: none is. O(F log F).
 TileableSurface make_tileable(const Mesh& mesh, const std::vector<bool>& creases);
 
-// A surface for all runs, with its creases and without. Each is made when it is asked for first. Without creases, it is coarsened
-// for files that are fitted to the codec.
+// A surface for all runs, with its creases and without. Each is made when it is asked for first.
 class TileableSurfaces {
   public:
-    // Keeps references to mesh and authored. authored: what the input's normals say of the mesh's edges.
-    TileableSurfaces(const Mesh& mesh, const AuthoredEdges& authored, const EncodeOptions& options);
+    // Keeps references to its arguments. authored: what the input's normals say of the mesh's edges.
+    TileableSurfaces(const Mesh& mesh, const AuthoredEdges& authored) : mesh_(mesh), authored_(authored) {}
 
     bool has_creases();
     uint64_t hard_edges() const { return authored_.kept; }  // of the creases, those that the input's normals name
@@ -41,7 +40,6 @@ class TileableSurfaces {
 
     const Mesh& mesh_;
     const AuthoredEdges& authored_;
-    const double most_vertices_;  // without creases
     std::optional<std::vector<bool>> creases_;
     std::optional<TileableSurface> creased_, smooth_;
 };
