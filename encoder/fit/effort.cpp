@@ -13,7 +13,7 @@ constexpr std::array<Effort, kMostEffort> kEfforts = {{
     {{1, 3, 2, 20}, 1, false, false, false},
     {{1, 4, 2, 40}, 2, false, false, false},
     {{2, 6, 3, 40}, 3, true, false, true},
-    {{4, 6, 2, 40}, 6, true, true, true},
+    {{4, 6, 3, 40}, 6, true, true, true},
     {{5, 6, 3, 40}, 6, true, true, true},
     {{6, 6, 3, 40}, 6, true, true, true},
     {{7, 6, 3, 40}, 6, true, true, true},

@@ -12,8 +12,7 @@ constexpr double kBitsPerDistance = 8.7;
 constexpr double kMostSlope = 2;  // of a detail's response at depth 1, between neighbours; generous
 
 void insert(std::vector<DetailChange>& best, const DetailChange& change, size_t most) {
-    const auto at =
-        std::find_if(best.begin(), best.end(), [&](const DetailChange& c) { return change.cost < c.cost; });
+    const auto at = std::find_if(best.begin(), best.end(), [&](const DetailChange& c) { return change.cost < c.cost; });
     best.insert(at, change);
     if (best.size() > most) best.pop_back();
 }
@@ -34,8 +33,7 @@ void FoldChanges::follow_state() {
     }
 }
 
-std::vector<DetailChange> FoldChanges::best_around(uint32_t cell, uint32_t from_depth, uint32_t to_depth,
-                                                   size_t most) {
+std::vector<DetailChange> FoldChanges::best_around(uint32_t cell, uint32_t from_depth, uint32_t to_depth, size_t most) {
     follow_state();
     CodedImage& image = state_.image();
     const std::vector<CellInPart> parts = image.parts_at(cell);

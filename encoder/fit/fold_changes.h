@@ -72,8 +72,8 @@ class FoldChanges {
 
     const FoldState& state_;
     ReachFinder reaches_;
-    std::vector<Vec3> x_;  // of the state, but for the change that is being tried
-    size_t followed_ = 0;  // moves of the state
+    std::vector<Vec3> x_;           // of the state, but for the change that is being tried
+    size_t followed_ = 0;           // moves of the state
     std::vector<uint32_t> off_at_;  // per sample: its place in offs_, or kNone
     std::vector<Off> offs_;
 };

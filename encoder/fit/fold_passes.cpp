@@ -22,7 +22,7 @@ constexpr uint32_t kCluster = 3;       // reach of a cluster of folded cells
 constexpr size_t kFewest = 2;          // folded cells of a cluster that is worth a coarser detail
 constexpr size_t kTrials = 8;          // changes tried for a cluster
 constexpr size_t kTrialsAtOnce = 2;
-constexpr double kMostFolded = 0.03;   // part of the cells; where more seem folded, sheets lie on each other
+constexpr double kMostFolded = 0.03;  // part of the cells; where more seem folded, sheets lie on each other
 
 }  // namespace
 
@@ -113,6 +113,7 @@ class FoldPass {
         return cells;
     }
 
+    // A thread has a finder of its own. A search runs nothing in parallel, so a finder serves one search at a time.
     std::vector<std::vector<DetailChange>> best_around(const std::vector<uint32_t>& cells, uint32_t from_depth,
                                                        uint32_t to_depth, size_t most) {
         std::vector<std::vector<DetailChange>> found(cells.size());
@@ -166,7 +167,8 @@ class FoldPass {
             Trial& trial = trials[i];
             const std::vector<uint32_t>& cells = trial.move.refolded;
             const bool pays = trial.cost < -kLeastFoldGain;
-            if (pays && std::any_of(cells.begin(), cells.end(), [&](uint32_t cell) { return is_taken[cell]; })) continue;
+            if (pays && std::any_of(cells.begin(), cells.end(), [&](uint32_t cell) { return is_taken[cell]; }))
+                continue;
             if (pays) {
                 change_integer(waiting[i].changes[0]);
                 applied.push_back(&trial);

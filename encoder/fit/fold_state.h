@@ -40,7 +40,7 @@ class FoldState {
     CodedImage& image() const { return image_; }
     const CodedImage::Levels& levels() const { return levels_; }
     const CoefficientPrices& prices() const { return prices_; }
-    double unit() const { return unit_; }          // length of a unit in the frame
+    double unit() const { return unit_; }               // length of a unit in the frame
     double step() const { return unit_ * quantizer_; }  // of the quantizer, in the frame
 
     // In the frame: the samples as they are, and as they were when the pass began.

@@ -96,10 +96,8 @@ Result<MadeSquare> map_and_sample(const CutSurface& cut, const Mesh& mesh, const
     const bool lossless = options.rate.kind == RateTarget::Kind::kLossless;
     ParametrizeOptions weighted;
     weighted.squeeze = lossless ? kLosslessSqueeze : kCodedSqueeze;
-    ParametrizeOptions first_map = options.density ? brief_map() : ParametrizeOptions{};
-    first_map.squeeze = weighted.squeeze;
     const DiskMapper mapper(disk, cut.boundary.sides, boundary_uv(cut.boundary, options.side));
-    GIM_TRY(even, mapper.map(first_map, clock.progress()));
+    GIM_TRY(even, mapper.map(weighted, clock.progress()));
     std::vector<Vec2> uv = std::move(even);
     square.stretch_efficiency = stretch_efficiency(disk, uv, 1.0);
     if (observer) {

@@ -202,15 +202,6 @@ Result<std::vector<Vec2>> parametrize(const Mesh& mesh, const std::vector<uint8_
     return DiskMapper(mesh, sides, std::move(uv)).map(options, progress);
 }
 
-ParametrizeOptions brief_map() {
-    ParametrizeOptions brief;
-    brief.growth = 1.4;
-    brief.sweeps = 3;
-    brief.final_sweeps = 8;
-    brief.tolerance = 1e-3;
-    return brief;
-}
-
 uint64_t count_flipped(const Mesh& mesh, const std::vector<Vec2>& uv) {
     return static_cast<uint64_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
         return !(twice_signed_area(uv[t[0]], uv[t[1]], uv[t[2]]) > 0);

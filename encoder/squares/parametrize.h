@@ -27,10 +27,6 @@ struct ParametrizeOptions {
     std::vector<double> importance;
 };
 
-// Options of a map that is not quite at its optimum, in half of the time. It serves to compare cuts, and to see where a map
-// errs.
-ParametrizeOptions brief_map();
-
 // Maps one disk, several times if need be. It is coarsened once.
 class DiskMapper {
   public:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "encoder/base/parallel.h"
 #include "encoder/code/wavelet_analysis.h"
 #include "format/seam.h"
 
@@ -114,6 +115,24 @@ TEST(DetailResponses, AreWhatRestoreMakesOfADetailInARectangleOfOddSides) {
 TEST(DetailResponses, ImagesThatAreSmallerThanAFunctionHaveTheirOwn) {
     expect_responses({33, 33, 5, true}, {1, 2, 3});
     expect_responses({9, 14, 2, false}, {1, 2});
+}
+
+TEST(DetailResponses, SeveralThreadsMayAskAtOnce) {
+    constexpr size_t kCount = 3 * 65 * 64;
+    DetailResponses one_by_one(129, 129, true), at_once(129, 129, true);
+    const auto ask = [](DetailResponses& responses, size_t i) {
+        const auto orientation = static_cast<Orientation>(i % 3);
+        const auto row = static_cast<uint32_t>(i / 3 / 64), column = static_cast<uint32_t>(i / 3 % 64);
+        const ResponseBlock block = responses.at(1, orientation, std::min(row, 63u), column);
+        return std::vector<float>(block.weights, block.weights + size_t{block.rows} * block.columns);
+    };
+    std::vector<std::vector<float>> found(kCount);
+    with_threads(4, [&] {
+        parallel_blocks(kCount, 16, 0, [&](size_t, size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) found[i] = ask(at_once, i);
+        });
+    });
+    for (size_t i = 0; i < kCount; ++i) ASSERT_EQ(found[i], ask(one_by_one, i)) << i;
 }
 
 TEST(DetailResponses, WeightsStayWhereTheyAre) {

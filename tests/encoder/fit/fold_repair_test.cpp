@@ -16,6 +16,7 @@
 #include "encoder/code/code_bands.h"
 #include "encoder/code/decode_surface.h"
 #include "encoder/code/file_units.h"
+#include "encoder/fit/fold_changes.h"
 #include "encoder/squares/make_square.h"
 #include "encoder/squares/write_squares.h"
 #include "encoder/surface/clean.h"
@@ -217,6 +218,43 @@ TEST(FoldRepair, ThreadsAndRepetitionChangeNothing) {
 }
 
 // So the same quantizer gives the same bytes when a search tries it again.
+// A finder that has followed many changes must find what a new one finds, and each must cost what it said.
+TEST(FoldChanges, AFinderFollowsTheStateAndTellsWhatAChangeCosts) {
+    const Square square = limbs();
+    const Units units = units_for(square.image, 40);
+    Pyramid<int32_t> bands = quantized(square, units);
+    const ImageParts parts{
+        square.image.gluing, {CodedPart{kSide, kSide, 0, 0, &square.seams, {}}}, fusing(square.seams)};
+    std::vector<DetailResponses> responses;
+    responses.emplace_back(kSide, kSide, true);
+    PartsImage image(parts, responses, {&bands, 1}, units);
+    const FitFrame frame(square.mesh);
+    const FitReference reference(Mesh{frame.into(square.mesh.positions), square.mesh.triangles});
+    const double front = front_side(frame.into(square.image.positions), square.image.gluing, reference);
+    std::vector<uint32_t> nearest(2 * square.image.gluing.kind.size(), kNone);
+    FoldState state({square.image.gluing, reference, frame, front}, image, kLastRepair, nearest);
+    ASSERT_FALSE(state.steep_cells().empty());
+    FoldChanges finder(state);
+    size_t changes = 0;
+    for (const uint32_t cell : state.steep_cells()) {
+        if (state.cost(cell) == 0) continue;
+        const auto best = finder.best_around(cell, 1, 3, 1), by_another = FoldChanges(state).best_around(cell, 1, 3, 1);
+        ASSERT_EQ(best.empty(), by_another.empty());
+        if (best.empty()) continue;
+        ASSERT_EQ(best[0].place, by_another[0].place);
+        ASSERT_EQ(best[0].cost, by_another[0].cost);
+        ASSERT_NEAR(finder.cost_of(best[0]), best[0].cost, 1e-6);
+        const PlaceInPart& p = best[0].place;
+        const CodedImage::Levels trial = image.decode_changed(p, best[0].component, best[0].by);
+        image.band(p).row(p.row)[3 * p.column + best[0].component] += best[0].by;
+        ASSERT_EQ(image.decode(), trial);
+        const WeightedSamples samples = finder.reach_of(p).samples;
+        EXPECT_FALSE(state.move(samples, best[0].shift).empty());
+        ++changes;
+    }
+    EXPECT_GT(changes, 5u);
+}
+
 TEST(FoldRepair, EarlierCallsChangeNothing) {
     const Square square = limbs();
     const Units units = units_for(square.image, 32);

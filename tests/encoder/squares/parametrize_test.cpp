@@ -142,6 +142,21 @@ TEST(Parametrize, SqueezeIsFreeUnlessAskedFor) {
     EXPECT_EQ(with_none.value(), with_next_to_none.value());
 }
 
+TEST(Parametrize, AMapperLeavesNothingBehindForItsNextMap) {
+    const Mesh mesh = clean(corpus::torus(30, 15, 1, 0.4)).value().mesh;
+    const SquareBoundary boundary = laid_out(mesh, 65);
+    const std::vector<Vec2> border = boundary_uv(boundary, 65);
+    const DiskMapper mapper(boundary.opened.mesh, boundary.sides, border);
+    ParametrizeOptions other;
+    other.squeeze = 0.5;
+    const auto first = mapper.map({}), second = mapper.map(other), third = mapper.map({});
+    ASSERT_TRUE(first.ok() && second.ok() && third.ok());
+    EXPECT_EQ(first.value(), parametrize(boundary.opened.mesh, boundary.sides, border, {}).value());
+    EXPECT_EQ(second.value(), parametrize(boundary.opened.mesh, boundary.sides, border, other).value());
+    EXPECT_EQ(third.value(), first.value());
+    EXPECT_NE(second.value(), first.value());
+}
+
 TEST(Sample, EveryGridPointIsOnTheSurfaceAndMatesAreBitEqual) {
     for (const NamedMesh& m : connected_meshes()) {
         const uint32_t side = 257;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "format/tile_atlas.h"
@@ -62,6 +64,33 @@ TEST(BestTiles, UsualNumberComesAlone) {
     ASSERT_TRUE(tried.ok());
     EXPECT_EQ(tried.value().size(), 1u);
     EXPECT_EQ(known.tried, std::vector<uint32_t>{120});
+}
+
+TEST(BestTiles, AllThatIsTriedWasLikely) {
+    for (const bool has_creases : {false, true}) {
+        for (const uint32_t effort : {4u, 5u}) {
+            for (const uint32_t tiles : {0u, 77u}) {
+                EncodeOptions options = options_for(65);
+                options.effort = effort;
+                options.tiles = tiles;
+                std::vector<EncodeOptions> likely = likely_tiles(options, has_creases);
+                const auto is_likely = [&](const EncodeOptions& now) {
+                    return std::any_of(likely.begin(), likely.end(), [&](const EncodeOptions& other) {
+                        return other.tiles == now.tiles && other.creases == now.creases;
+                    });
+                };
+                size_t tried = 0;
+                const auto estimate = [&](const EncodeOptions& now, std::optional<double>) -> Result<Estimate> {
+                    EXPECT_TRUE(is_likely(now)) << now.tiles;
+                    ++tried;
+                    return Estimate{log_bytes(now.creases ? 1000 : 1500, now.rate.value), 1};
+                };
+                const auto code = [](const EncodeOptions&, const Contest&) -> Result<Encoded> { return Error{}; };
+                ASSERT_TRUE(try_tiles({code, estimate}, options, has_creases).ok());
+                EXPECT_EQ(tried, likely.size());
+            }
+        }
+    }
 }
 
 TEST(BestTiles, NumberThatIsAskedForStays) {

@@ -97,6 +97,24 @@ std::map<uint32_t, float> weights_of(const WeightedSamples& moved) {
     return weights;
 }
 
+TEST(TileFoldImage, ATrialDecodesTheChangeAndMakesNone) {
+    for_each_image([](MadeImage& m) {
+        const CodedImage::Levels before = m.image->decode();
+        uint32_t count = 0;
+        m.for_each_place([&](const PlaceInPart& place) {
+            if (m.image->source_of(place) != place || count++ % 29 != 0) return;
+            const uint32_t k = count % 3;
+            const CodedImage::Levels trial = m.image->decode_changed(place, k, 2);
+            ASSERT_EQ(m.image->decode(), before);
+            int32_t& integer = m.image->band(place).row(place.row)[3 * place.column + k];
+            integer += 2;
+            EXPECT_EQ(m.image->decode(), trial);
+            integer -= 2;
+        });
+        EXPECT_GT(count, 0u);
+    });
+}
+
 // The change of finer details' frames is left out, so only the finest details are looked at.
 TEST(TileFoldImage, AChangeMovesTheSamplesThatItSays) {
     for_each_image([](MadeImage& m) {
