@@ -74,7 +74,7 @@ float tangential_pull_of(CodedFit::Effort effort) {
 // The price spreads samples evenly where the surface is curved. Where it is flat, nothing else keeps rows of samples from
 // crowding. More than 0.01 takes bytes.
 constexpr double kMembrane = 0.005;
-// Samples of the reference per face. What rounds miss that others follow, these find.
+// Samples of the reference per face. Rounds that others follow take fewer: what they miss, the others find.
 constexpr double kDensity = 1.5, kSparse = 0.75;
 constexpr double kTolerance = 1e-4;
 
@@ -273,7 +273,8 @@ std::vector<Vec3> CodedFit::run(const Units& units, Effort effort, const Progres
     // Cycles mend no folds, since later rounds would undo that.
     const auto rounds = [&](const Schedule::Part& part, double reach, bool is_last) {
         const int full = is_last ? kFullUnfoldings : 0;
-        const int sparse = is_last || effort == Effort::kSearch ? part.free / 2 : part.free + part.held;
+        const int few = impl_->fitter.is_large() ? part.free / 2 : 0;
+        const int sparse = is_last || effort == Effort::kSearch ? few : part.free + part.held;
         for (int k = 0; k < part.free + part.held; ++k) {
             if (progress) progress(Stage::kFit, double(done++) / schedule.rounds());
             const Free free = k < part.free ? Free::kAll : Free::kNormals;

@@ -63,6 +63,8 @@ class Fitter {
     const std::vector<bool>& held() const { return held_; }
     // The sign that makes the image face outwards.
     double front() const { return front_; }
+    // Whether it has so many samples that few of their distances tell where a round should go.
+    bool is_large() const { return samples_ >= kManySamples; }
     FitQuality quality();
     uint64_t folds() const;  // the same number as in quality()
     // positions: in the frame; equal within a class.
@@ -128,6 +130,7 @@ class Fitter {
 
     // Cosine above which no search is needed.
     static constexpr double kUnsuspicious = 0.7;
+    static constexpr double kManySamples = 16000;
 
     const GridGluing& gluing_;
     const FitReference& reference_;

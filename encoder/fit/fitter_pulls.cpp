@@ -112,7 +112,7 @@ std::vector<Pull> Fitter::pulls_from_reference(const ImageSurface& image, double
 
 std::vector<Pull> Fitter::pulls_from_image(const ImageSurface& image, double density, uint64_t seed) {
     const auto per_face = static_cast<size_t>(std::max(1.0, std::round(0.5 * density)));
-    const bool skips_half = density < 1;  // of the faces: one of each cell
+    const bool skips_half = density < 1 && is_large();  // of the faces: one of the two of each cell
     nearest_reference_face_.assign(face_hint_.size(), kNone);
     std::vector<Pull> pulls(per_face * image.areas.size());
     parallel_blocks(image.areas.size(), 2048, 0, [&](size_t, size_t begin, size_t end) {
