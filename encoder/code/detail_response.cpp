@@ -32,18 +32,6 @@ std::vector<float>& band_of(AnalysisLevel<float>& level, Orientation orientation
                                                    : level.diagonal;
 }
 
-Pyramid<float> zero_pyramid(uint32_t columns, uint32_t rows, uint32_t steps) {
-    Pyramid<float> zero{columns, rows, {}, std::vector<AnalysisLevel<float>>(steps)};
-    zero.base.resize(size_t{3} * zero.columns_at(0) * zero.rows_at(0));
-    for (uint32_t k = 0; k < steps; ++k) {
-        const uint32_t c = zero.columns_at(k + 1), r = zero.rows_at(k + 1);
-        zero.levels[k].horizontal.resize(size_t{3} * low_count(r) * high_count(c));
-        zero.levels[k].vertical.resize(size_t{3} * high_count(r) * low_count(c));
-        zero.levels[k].diagonal.resize(size_t{3} * high_count(r) * high_count(c));
-    }
-    return zero;
-}
-
 }  // namespace
 
 ResponseBlock DetailResponses::at(uint32_t depth, Orientation orientation, uint32_t row, uint32_t column) {

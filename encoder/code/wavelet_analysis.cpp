@@ -78,6 +78,19 @@ void to_unit_gain(float* low, size_t count) {
 
 }  // namespace
 
+Pyramid<float> zero_pyramid(uint32_t columns, uint32_t rows, uint32_t steps) {
+    Pyramid<float> pyramid{columns, rows, {}, std::vector<AnalysisLevel<float>>(steps)};
+    pyramid.base.resize(size_t{3} * pyramid.columns_at(0) * pyramid.rows_at(0));
+    for (uint32_t e = 1; e <= steps; ++e) {
+        const uint32_t c = pyramid.columns_at(e), r = pyramid.rows_at(e);
+        AnalysisLevel<float>& level = pyramid.levels[e - 1];
+        level.horizontal.resize(size_t{3} * low_count(r) * high_count(c));
+        level.vertical.resize(size_t{3} * high_count(r) * low_count(c));
+        level.diagonal.resize(size_t{3} * high_count(r) * high_count(c));
+    }
+    return pyramid;
+}
+
 template <class Wavelet>
 Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t columns, uint32_t rows,
                                           uint32_t steps, const SeamTable* seams) {

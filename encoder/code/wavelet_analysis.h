@@ -32,6 +32,9 @@ struct Pyramid {
     uint32_t rows_at(uint32_t step) const { return halved(rows, steps() - step); }
 };
 
+// The bands of an image, all zero. O(samples).
+Pyramid<float> zero_pyramid(uint32_t columns, uint32_t rows, uint32_t steps);
+
 // columns, rows: at least 2 before each step. seams: of a square that is cut at its cut-nodes (format/rim.h), 9/7 only.
 template <class Wavelet>
 Pyramid<typename Wavelet::Sample> analyse(std::vector<typename Wavelet::Sample> image, uint32_t columns, uint32_t rows,

@@ -19,19 +19,7 @@ void for_each_band(Pyramid& pyramid, const Body& body) {
 }
 
 Pyramid<float> empty_pyramid(const CodedPart& part) {
-    Pyramid<float> pyramid;
-    pyramid.columns = part.columns;
-    pyramid.rows = part.rows;
-    pyramid.levels.resize(halvings(part.columns, part.rows));
-    for (uint32_t e = 1; e <= pyramid.steps(); ++e) {
-        const uint32_t columns = pyramid.columns_at(e), rows = pyramid.rows_at(e);
-        AnalysisLevel<float>& level = pyramid.levels[e - 1];
-        level.horizontal.resize(size_t{3} * low_count(rows) * high_count(columns));
-        level.vertical.resize(size_t{3} * high_count(rows) * low_count(columns));
-        level.diagonal.resize(size_t{3} * high_count(rows) * high_count(columns));
-    }
-    pyramid.base.resize(size_t{3} * pyramid.columns_at(0) * pyramid.rows_at(0));
-    return pyramid;
+    return zero_pyramid(part.columns, part.rows, halvings(part.columns, part.rows));
 }
 
 }  // namespace
