@@ -160,7 +160,7 @@ std::optional<DetailChange> FoldChanges::best_of_detail(const PlaceInPart& p, do
             DetailChange change{p, k, by, Vec3::Zero(), 0};
             const double length = state_.unit() * double{dequantize(now + by, step[k]) - dequantize(now, step[k])};
             for (int i = 0; i < 3; ++i) change.shift[i] = length * double{frame.axis[k][i]};
-            change.cost = state_.prices().bits_of_change(integers, p.row, p.column, k, by) - before;
+            change.cost = state_.bits_of(p, k, by) - before;
             if (change.cost > limit) continue;
             if (!distance) distance = distance_cost(reach);
             change.cost += distance->of(change.shift);
@@ -177,10 +177,8 @@ std::optional<DetailChange> FoldChanges::best_of_detail(const PlaceInPart& p, do
 
 double FoldChanges::cost_of(const DetailChange& change) {
     follow_state();
-    const PlaceInPart& p = change.place;
-    const DetailReach& reach = reach_of(p);
-    const double bits =
-        state_.prices().bits_of_change(state_.image().band(p), p.row, p.column, change.component, change.by);
+    const DetailReach& reach = reach_of(change.place);
+    const double bits = state_.bits_of(change.place, change.component, change.by);
     return bits - fold_cost_before(reach) + distance_cost(reach).of(change.shift) +
            fold_cost_after(reach, change.shift, HUGE_VAL);
 }

@@ -150,8 +150,8 @@ class FoldPass {
     Trial trial_of(const DetailChange& change) {
         const PlaceInPart& p = change.place;
         Trial trial{state_.move_to(image_.decode_changed(p, change.component, change.by)), 0};
-        trial.cost = state_.prices().bits_of_change(image_.band(p), p.row, p.column, change.component, change.by) +
-                     trial.move.fold_cost + finders_.local().distance_cost_of(trial.move.x, trial.move.samples);
+        trial.cost = state_.bits_of(p, change.component, change.by) + trial.move.fold_cost +
+                     finders_.local().distance_cost_of(trial.move.x, trial.move.samples);
         return trial;
     }
 

@@ -39,7 +39,10 @@ class FoldState {
     const FitReference& reference() const { return shown_.reference; }
     CodedImage& image() const { return image_; }
     const CodedImage::Levels& levels() const { return levels_; }
-    const CoefficientPrices& prices() const { return prices_; }
+    // By how many bits a band grows if the component of a detail becomes greater by `by`.
+    double bits_of(const PlaceInPart& place, uint32_t component, int32_t by) const {
+        return prices_.bits_of_change(image_.band(place), place.row, place.column, component, by);
+    }
     double unit() const { return unit_; }               // length of a unit in the frame
     double step() const { return unit_ * quantizer_; }  // of the quantizer, in the frame
 
